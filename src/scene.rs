@@ -1,0 +1,131 @@
+//! Triangles, materials, textures, lights and cameras: what a scene file holds, flattened.
+
+pub mod gltf;
+
+use glam::{DVec3, Vec2, Vec3, Vec4};
+
+/// A scene, flattened into one list of triangles in one space.
+///
+/// `positions` are stored relative to `origin`, so that f32 keeps its precision wherever the scene
+/// stands: world position = `origin` + `positions[i]`.
+#[derive(Debug, Clone, Default)]
+pub struct Scene {
+    /// [scene units, world] The centre of the scene's bounding box.
+    pub origin: DVec3,
+    /// [scene units] Vertex positions relative to `origin`; every component is finite.
+    pub positions: Vec<Vec3>,
+    /// [texture widths, heights] One per vertex, KHR_texture_transform applied; empty when no material
+    /// has a texture.
+    pub texcoords: Vec<Vec2>,
+    /// Three vertices per triangle, counter-clockwise seen from the front; opaque triangles first,
+    /// then the alpha-masked ones. Every index is below `positions.len()`.
+    pub triangles: Vec<[u32; 3]>,
+    /// One per triangle: index into `materials`.
+    pub triangle_materials: Vec<u32>,
+    /// Triangles `..opaque_count` are opaque, `opaque_count..` are alpha-masked.
+    pub opaque_count: usize,
+    pub materials: Vec<Material>,
+    /// Only the textures that `materials` name.
+    pub textures: Vec<Texture>,
+    /// In the order of the file's node tree.
+    pub lights: Vec<AreaLight>,
+    /// In the order of the file's node tree.
+    pub cameras: Vec<Camera>,
+    /// What the file asked for and the engine leaves out or treats otherwise, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A surface: diffuse colour and, where it has holes, the alpha below which light passes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// [0, 1] linear RGB and alpha, multiplied with the texture.
+    pub base_color: Vec4,
+    /// Index into `Scene::textures`.
+    pub texture: Option<usize>,
+    /// [0, 1] alphaMode MASK: a texel whose alpha is below lets light through. None = opaque.
+    pub alpha_cutoff: Option<f32>,
+    /// False: the camera does not see its back faces. (They cast shadows all the same.)
+    pub double_sided: bool,
+}
+
+/// How a texture continues beyond [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Wrap {
+    Repeat = 0,
+    Mirror = 1,
+    Clamp = 2,
+}
+
+/// A base-colour texture: sRGB colour, linear alpha, 8 bits each.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Texture {
+    /// [texel]
+    pub width: u32,
+    /// [texel]
+    pub height: u32,
+    /// width × height × RGBA, the top row first.
+    pub rgba: Vec<u8>,
+    pub wrap: [Wrap; 2],
+    /// True: bilinear between texel centres. False: the nearest texel.
+    pub linear: bool,
+}
+
+/// A pinhole camera. Positions are in world space (not relative to `Scene::origin`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    pub name: String,
+    /// [scene units]
+    pub eye: DVec3,
+    /// [scene units]
+    pub target: DVec3,
+    pub up: DVec3,
+    /// [degree] (0, 180) The full vertical field of view.
+    pub vfov_deg: f64,
+    /// Width / height that the file asks for, when it does.
+    pub aspect: Option<f64>,
+}
+
+/// What an area light looks like. A light with no extent at all is a point: its shadow is hard.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LightShape {
+    /// [scene units] Half-axis vectors, perpendicular to each other; the light shines along u × v.
+    Rect { u: DVec3, v: DVec3 },
+    /// [scene units] The light shines along `normal` (any length but 0).
+    Disc { normal: DVec3, radius: f64 },
+}
+
+/// A one-sided planar light of constant radiance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreaLight {
+    pub name: String,
+    /// [scene units, world]
+    pub center: DVec3,
+    pub shape: LightShape,
+    /// Linear RGB, ≥ 0.
+    pub color: Vec3,
+    /// [radiance] None: such that a white surface at the camera's target that faces the light
+    /// has radiance 1.
+    pub intensity: Option<f32>,
+}
+
+impl Scene {
+    /// [scene units, relative to `origin`] The bounding box of all vertices (both zero without any).
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let Some((&first, rest)) = self.positions.split_first() else {
+            return (Vec3::ZERO, Vec3::ZERO);
+        };
+        rest.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)))
+    }
+
+    /// The corners of triangle `index`, relative to `origin`.
+    pub fn corners(&self, index: usize) -> [Vec3; 3] {
+        self.triangles[index].map(|i| self.positions[i as usize])
+    }
+
+    /// Whether any material lets light through where its texture is transparent.
+    pub fn has_masked(&self) -> bool {
+        self.opaque_count < self.triangles.len()
+    }
+}
