@@ -1,0 +1,62 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Fits a view's projection to its casters and writes the work that is left for its passes
+// (algorithm.md §10). One invocation.
+#include "pass.glsl"
+#include "bounds.glsl"
+#include "mssm_levels.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
+layout(binding = 1, scalar) readonly buffer Views { View views[]; };
+layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
+
+// Extent of one axis at most this many times the other's: kernels stay near to square.
+const float ASPECT_MAX = 8.0;
+// [texel] Frame that no caster touches, so that contours close inside the map: a column of empty
+// samples and half a texel for the rounding of edges, on each side.
+const float MARGIN = 1.5;
+
+// [texel] Sides of the largest kernel that a receiver of this view can have.
+vec2 largest_kernel(View view, Fit fit) {
+    float depth_min = fit.near / value_of(fit.receiver_bounds[2], 1.0);
+    vec2 kappa = fit.near / (fit.focal * view.half_size);
+    return (view.extent.zw - view.extent.xy) * (max(1.0 - depth_min, 0.0) / kappa);
+}
+
+void main() {
+    Fit fit = fits[push.index];
+    View view = views[push.index];
+    uvec2 tiles = (frame.size + TILE_SIZE - 1u) / TILE_SIZE;
+    bool empty = fit.caster_bounds[4] == 0u;
+    if (!empty) {
+        vec2 upper = vec2(value_of(fit.caster_bounds[0], 0.0), value_of(fit.caster_bounds[1], 0.0));
+        vec2 lower = -vec2(value_of(fit.caster_bounds[2], 0.0), value_of(fit.caster_bounds[3], 0.0));
+        vec2 extent = max(upper - lower, vec2(1e-5));
+        extent = max(extent, extent.yx / ASPECT_MAX);
+        vec2 middle = 0.5 * (lower + upper);
+        float inner = float(view.map_size) - 1.0 - 2.0 * MARGIN;
+        fit.near = -value_of(fit.caster_bounds[4], 0.0) * 0.999;
+        fit.focal = inner / extent;
+        fit.center = 0.5 * (float(view.map_size) - 1.0) - fit.focal * middle;
+        float side = float(view.map_size);
+        if (!OBLIQUE) {
+            vec2 largest = min(largest_kernel(view, fit), vec2(side));
+            side = max(largest.x, largest.y) + 2.0;
+        }
+        int levels = level_covering(int(min(side, float(view.map_size)))) + 1;
+        fit.level_count = min(uint(levels), view.levels_max);
+    }
+    uvec3 map_groups = uvec3((uvec2(view.map_size) + TILE_SIZE - 1u) / TILE_SIZE, 1u);
+    for (uint level = 0u; level < LEVELS_MAX; ++level)
+        fit.level_groups[level] = level < fit.level_count ? map_groups : uvec3(0u);
+    // A view that nothing is accumulated into writes every pixel, casters or not.
+    fit.kernel_groups = empty && ACCUMULATE ? uvec3(0u) : uvec3(tiles, 1u);
+    uvec2 packets = (frame.size + uvec2(PACKET_WIDTH, PACKET_HEIGHT) - 1u) / uvec2(PACKET_WIDTH, PACKET_HEIGHT);
+    fit.classify_groups = empty ? uvec3(0u) : uvec3((packets + TILE_SIZE - 1u) / TILE_SIZE, 1u);
+    fit.opaque_draw[1] = 1u;
+    fit.masked_draw[1] = 1u;
+    fit.masked_draw[2] = 3u * frame.opaque_count;
+    fits[push.index] = fit;
+}

@@ -1,0 +1,77 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// A kernel for each pixel, shrunk by repeated MSSM queries, and the pixels that need no integration
+// [Yang09 alg. 1, step 5].
+#include "pass.glsl"
+#include "depth.glsl"
+#include "mssm_levels.glsl"
+#include "mssm.glsl"
+#include "kernel.glsl"
+
+layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
+
+layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
+layout(binding = 1, scalar) readonly buffer Views { View views[]; };
+layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
+layout(binding = 3) uniform texture2D position_world;
+layout(binding = 4) uniform texture2D normal_world;
+layout(binding = 5) uniform texture2DArray mssm;
+layout(binding = 6, scalar) writeonly buffer Kernels { Kernel kernels[]; };
+layout(binding = 7, scalar) buffer Occlusion { float occlusion[]; };
+layout(binding = 8, scalar) buffer CountersBlock { Counters counters; };
+
+// Rounds of query and shrinking; the gain of a fifth is below a texel in all scenes seen.
+const int ROUNDS = 4;
+
+Kernel kernel_of(View view, Fit fit, Receiver receiver) {
+    int size = int(view.map_size);
+    Kernel kernel = Kernel(KERNEL_LIT, 0u, 0u, 0.0, 0.0);
+    // The projection's near plane is the nearest caster: depth 1.
+    float depth_max = 1.0;
+    Cells cells;
+    vec2 range = vec2(0.0);
+    for (int round = 0; round < ROUNDS; ++round) {
+        if (depth_max <= receiver.biased) return kernel;
+        cells = kernel_cells(view, receiver, depth_max);
+        if (any(greaterThan(cells.first, cells.last))) return kernel;
+        range = mssm_query(mssm, cells.first, cells.last, int(fit.level_count), size);
+        if (range.y >= depth_max) break;
+        depth_max = range.y;
+    }
+    if (depth_max <= receiver.biased) return kernel;
+    kernel.status = cells.whole && range.x > receiver.biased ? KERNEL_UMBRA : KERNEL_PENUMBRA;
+    kernel.first = packed(cells.first);
+    kernel.last = packed(cells.last);
+    kernel.depth_min = range.x;
+    kernel.depth_max = range.y;
+    return kernel;
+}
+
+void count(uint status) {
+    if (status == KERNEL_NONE) return;
+    atomicAdd(counters.pixels, 1u);
+    if (status == KERNEL_LIT) atomicAdd(counters.lit, 1u);
+    if (status == KERNEL_UMBRA) atomicAdd(counters.umbra, 1u);
+    if (status == KERNEL_PENUMBRA) atomicAdd(counters.penumbra, 1u);
+}
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size))) return;
+    uint index = pixel.y * frame.size.x + pixel.x;
+    View view = views[push.index];
+    Fit fit = fits[push.index];
+    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
+    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
+    vec3 to_point = position.xyz - view.center;
+    Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
+    if (position.w > 0.0 && in_view(view, to_point, normal)) {
+        kernel.status = KERNEL_LIT;
+        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, normal));
+    }
+    kernels[index] = kernel;
+    float occluded = kernel.status == KERNEL_UMBRA ? view.weight : 0.0;
+    if (!ACCUMULATE) occlusion[index] = occluded;
+    else if (occluded > 0.0) occlusion[index] += occluded;
+    if (COUNT) count(kernel.status);
+}

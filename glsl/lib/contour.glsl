@@ -1,0 +1,49 @@
+// Marching squares on the dual grid (algorithm.md §2). Corners of a cell count counter-clockwise from
+// (0, 0): 0 (0, 0), 1 (1, 0), 2 (1, 1), 3 (0, 1). Edge e runs from corner e to corner e + 1.
+
+// Per mask of occluding corners (bit = corner): number of segments, then start and end edge of each, two
+// bits apiece. A segment has the occluders on its left; the two saddles keep them apart.
+const uint SEGMENTS[16] = uint[16](
+    0u, 49u, 5u, 53u, 25u, 434u, 9u, 57u, 45u, 33u, 710u, 37u, 29u, 17u, 13u, 0u);
+
+uint mask_of(vec4 depths, float limit) {
+    return uint(depths.x > limit) | uint(depths.y > limit) << 1 | uint(depths.z > limit) << 2
+         | uint(depths.w > limit) << 3;
+}
+
+uint segment_count(uint mask) { return SEGMENTS[mask] & 3u; }
+
+uint start_edge(uint mask, uint segment) { return SEGMENTS[mask] >> (2u + 4u * segment) & 3u; }
+
+uint end_edge(uint mask, uint segment) { return SEGMENTS[mask] >> (4u + 4u * segment) & 3u; }
+
+// [cell] The contour vertex on an edge: its midpoint.
+vec2 midpoint(uint edge) {
+    return vec2(edge == 1u ? 1.0 : edge == 3u ? 0.0 : 0.5, edge == 2u ? 1.0 : edge == 0u ? 0.0 : 0.5);
+}
+
+// The depth of a contour vertex is that of the edge's occluding corner: at a start edge its first
+// corner, at an end edge its second.
+float start_depth(vec4 depths, uint edge) { return depths[edge]; }
+
+float end_depth(vec4 depths, uint edge) { return depths[(edge + 1u) & 3u]; }
+
+// On which side of a segment the point `at` of the cell lies: +1 left (the occluder's), −1 right.
+// Every product is exact, so the sign is that of the difference of two floats: the centre test and the
+// integration ask the same question and get the same answer (traps 1 and 2).
+float side_of(uint from, uint to, vec2 at) {
+    precise vec2 start = midpoint(from);
+    precise vec2 way = midpoint(to) - start;
+    precise vec2 offset = at - start;
+    precise float left = way.x * offset.y;
+    precise float right = way.y * offset.x;
+    return left > right ? 1.0 : -1.0;
+}
+
+// Whether the point `at` of a cell lies inside the contour.
+bool inside_contour(uint mask, vec2 at) {
+    bool inside = mask == 15u;
+    for (uint i = 0u; i < segment_count(mask); ++i)
+        inside = inside || side_of(start_edge(mask, i), end_edge(mask, i), at) > 0.0;
+    return inside;
+}

@@ -1,0 +1,88 @@
+// A receiver as a view sees it: where it falls on the map, how deep, and the map from occluders to
+// the light (algorithm.md §1, §8).
+
+struct Receiver {
+    // [texel] Its projection, t_p. Never on a line of contour vertices: see `project`.
+    vec2 t;
+    // Depth near / z.
+    float d;
+    // Depth moved towards the light by the bias: samples with a larger depth occlude.
+    float biased;
+    // Back-projection q = (ku · Δt, kv · Δt) / (Δd + b · Δt), with Δt = t − t_p and Δd = d − d_p.
+    vec2 ku;
+    vec2 kv;
+    vec2 b;
+};
+
+// A direction or relative position in the frame of the view's face.
+vec3 to_face(View view, vec3 world) {
+    return vec3(dot(world, view.right), dot(world, view.up), dot(world, view.forward));
+}
+
+// The face that a receiver belongs to, from its position in the light's frame (any axis scales).
+uint face_of(vec3 in_light, float reach) {
+    vec2 side = abs(in_light.xy);
+    if (max(side.x, side.y) <= reach * in_light.z) return 0u;
+    if (side.x >= side.y) return in_light.x > 0.0 ? 1u : 2u;
+    return in_light.y > 0.0 ? 3u : 4u;
+}
+
+// Whether the sub-light's view has to look at a surface point: it lies in front of the light, belongs
+// to the view's face, and at least a part of the sub-light is in front of it.
+// to_point: from the sub-light's centre; normal: of the visible side.
+bool in_view(View view, vec3 to_point, vec3 normal) {
+    vec3 in_light = vec3(dot(to_point, view.light_u) * view.half_size.x * view.half_size.x,
+                         dot(to_point, view.light_v) * view.half_size.y * view.half_size.y,
+                         dot(to_point, view.light_n));
+    in_light.xy /= view.half_size;
+    if (!(in_light.z > 0.0)) return false;
+    if (face_of(in_light, view.reach) != view.face) return false;
+    vec2 along = vec2(dot(normal, view.light_u), dot(normal, view.light_v)) * view.half_size * view.half_size;
+    vec2 reach = max(along * view.extent.xy, along * view.extent.zw);
+    return reach.x + reach.y > dot(normal, to_point);
+}
+
+Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
+    Receiver receiver;
+    precise vec3 p = to_face(view, to_point);
+    precise float inverse_z = 1.0 / p.z;
+    precise vec2 t = fit.focal * (p.xy * inverse_z) + fit.center;
+    // Contour vertices lie on multiples of ½. One ulp beside them, no vertex is ever exactly at the
+    // light's centre, where it would have no direction.
+    if (fract(2.0 * t.x) == 0.0) t.x = uintBitsToFloat(floatBitsToUint(t.x) + 1u);
+    precise float d = fit.near * inverse_z;
+
+    vec3 n = to_face(view, normal);
+    precise vec2 slope = abs(n.xy) * fit.near / (fit.focal * max(abs(dot(n, p)), 1e-30));
+    precise float slope_bias = min((slope.x + slope.y) * view.bias, BIAS_SLOPE_MAX * d);
+    precise vec3 magnitude = abs(to_point) + abs(view.center);
+    precise float rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * inverse_z);
+    precise float biased = d + slope_bias + rounding;
+
+    receiver.t = t;
+    receiver.d = d;
+    receiver.biased = biased;
+    precise vec2 ku = vec2(fit.near / (fit.focal.x * view.half_size.x), 0.0);
+    precise vec2 kv = vec2(0.0, fit.near / (fit.focal.y * view.half_size.y));
+    receiver.b = vec2(0.0);
+    if (OBLIQUE) {
+        vec3 g = p * inverse_z;
+        vec3 m = to_face(view, view.light_n);
+        vec3 lu = to_face(view, view.light_u);
+        vec3 lv = to_face(view, view.light_v);
+        float mg = dot(m, g);
+        ku = fit.near * (lu.xy - m.xy * (dot(lu, g) / mg)) / fit.focal;
+        kv = fit.near * (lv.xy - m.xy * (dot(lv, g) / mg)) / fit.focal;
+        receiver.b = -d * (m.xy / fit.focal) / mg;
+    }
+    receiver.ku = ku;
+    receiver.kv = kv;
+    return receiver;
+}
+
+// Where the line from the receiver through the occluder point (t_p + dt, d) meets the light plane, as
+// (x, y, w) with q = (x, y) / w in half sizes; w > 0 for points between receiver and light.
+vec3 back_project(Receiver receiver, vec2 dt, float d) {
+    if (OBLIQUE) return vec3(dot(receiver.ku, dt), dot(receiver.kv, dt), d - receiver.d + dot(receiver.b, dt));
+    return vec3(receiver.ku.x * dt.x, receiver.kv.y * dt.y, d - receiver.d);
+}

@@ -1,0 +1,41 @@
+// Kernels [GBP06, SS07; Yang09 eq. 1]: which dual cells can project onto the sub-light.
+
+struct Cells {
+    ivec2 first;
+    ivec2 last;
+    // The kernel lies inside the map: nothing was cut off.
+    bool whole;
+};
+
+uint packed(ivec2 cell) { return uint(cell.x) | uint(cell.y) << 16; }
+
+ivec2 unpacked(uint cell) { return ivec2(cell & 0xffffu, cell >> 16); }
+
+// The cells that occluders no nearer to the light than `depth_max` can project from.
+Cells kernel_cells(View view, Receiver receiver, float depth_max) {
+    float near_side = depth_max - receiver.d;
+    precise vec2 lower = near_side * view.extent.xy / vec2(receiver.ku.x, receiver.kv.y);
+    precise vec2 upper = near_side * view.extent.zw / vec2(receiver.ku.x, receiver.kv.y);
+    if (OBLIQUE) {
+        lower = vec2(0.0);
+        upper = vec2(0.0);
+        float determinant = receiver.ku.x * receiver.kv.y - receiver.ku.y * receiver.kv.x;
+        for (int i = 0; i < 4; ++i) {
+            vec2 q = vec2((i & 1) == 0 ? view.extent.x : view.extent.z, (i & 2) == 0 ? view.extent.y : view.extent.w);
+            vec2 at = vec2(q.x * receiver.kv.y - q.y * receiver.ku.y, q.y * receiver.ku.x - q.x * receiver.kv.x) / determinant;
+            float share = 1.0 - dot(receiver.b, at);
+            // The light's corner lies beyond the map's horizon: the kernel has no bound there.
+            vec2 dt = share > 1e-4 ? at * (near_side / share) : sign(at) * float(2u * view.map_size);
+            lower = min(lower, dt);
+            upper = max(upper, dt);
+        }
+    }
+    int edge = int(view.map_size) - 2;
+    precise vec2 first = floor(clamp(receiver.t + lower, vec2(-2.0), vec2(edge + 2)));
+    precise vec2 last = floor(clamp(receiver.t + upper, vec2(-2.0), vec2(edge + 2)));
+    Cells cells;
+    cells.first = max(ivec2(first), ivec2(0));
+    cells.last = min(ivec2(last), ivec2(edge));
+    cells.whole = all(equal(cells.first, ivec2(first))) && all(equal(cells.last, ivec2(last)));
+    return cells;
+}

@@ -1,0 +1,60 @@
+// The sub-light as the area that segments are integrated over (algorithm.md §3).
+
+// Where the direction `q` leaves the square [−1, 1]², counted along its border: 0 at +x, 2 at +y, 4 at
+// −x, 6 at −y; [−1, 7]. Opposite directions are exactly 4 apart.
+float perimeter(vec2 q) {
+    vec2 size = abs(q);
+    if (size.x >= size.y) return (q.x > 0.0 ? 0.0 : 4.0) + q.y / q.x;
+    return (q.y > 0.0 ? 2.0 : 6.0) - q.x / q.y;
+}
+
+// How often the way from perimeter parameter a to b, seen from the centre under less than 180°, must be
+// corrected by a full turn (8). side: +1 or −1 where it is known on which side of the segment the
+// centre lies (left, right), 0 where the segment can't come close to the centre. Without it the
+// rounding of a direction could turn a half-turn over (trap 2).
+float turns(float a, float b, float side) {
+    float way = b - a;
+    float turn = way > 4.0 ? -1.0 : way < -4.0 ? 1.0 : 0.0;
+    way += 8.0 * turn;
+    if (abs(way) > 3.5 && way * side < 0.0) turn += side;
+    return turn;
+}
+
+// Clips the segment a→b, in homogeneous light coordinates, to the sub-light's box. False: nothing left.
+bool clip_to_box(vec4 extent, inout vec3 a, inout vec3 b) {
+    vec4 da = vec4(a.xy - a.z * extent.xy, a.z * extent.zw - a.xy);
+    vec4 db = vec4(b.xy - b.z * extent.xy, b.z * extent.zw - b.xy);
+    float from = 0.0;
+    float to = 1.0;
+    for (int i = 0; i < 4; ++i) {
+        if (da[i] < 0.0) {
+            if (!(db[i] > 0.0)) return false;
+            from = max(from, da[i] / (da[i] - db[i]));
+        } else if (db[i] < 0.0) {
+            to = min(to, da[i] / (da[i] - db[i]));
+        }
+    }
+    if (!(from < to)) return false;
+    vec3 way = b - a;
+    // A vertex inside keeps its bits: the next segment starts with the same ones.
+    if (to < 1.0) b = a + to * way;
+    if (from > 0.0) a = a + from * way;
+    return a.z > 0.0 && b.z > 0.0;
+}
+
+// Clips the segment a→b to the disc `rim`. False: nothing left.
+bool clip_to_rim(vec3 rim, inout vec2 a, inout vec2 b) {
+    vec2 way = b - a;
+    vec2 from_center = a - rim.xy;
+    float square = dot(way, way);
+    float along = dot(from_center, way);
+    float root = along * along - square * (dot(from_center, from_center) - rim.z * rim.z);
+    if (!(root > 0.0)) return false;
+    float half_chord = sqrt(root);
+    float from = (-along - half_chord) / square;
+    float to = (half_chord - along) / square;
+    if (!(max(from, 0.0) < min(to, 1.0))) return false;
+    if (to < 1.0) b = a + to * way;
+    if (from > 0.0) a = a + from * way;
+    return true;
+}

@@ -1,0 +1,9 @@
+// What every pass begins with: shared structs, specialization constants, push constants.
+
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "shared.glsl"
+#include "constants.glsl"
+
+layout(push_constant, scalar) uniform PushBlock { Push push; };

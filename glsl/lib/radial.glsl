@@ -1,0 +1,66 @@
+// Radial integration of a cell's contour [GBP07; algorithm.md §3]. Needs the binding `sectors`.
+
+// The sub-light's area between the directions with perimeter parameters a and b, `turn` full turns
+// added (see `turns`).
+float sector_to(View view, float parameter) {
+    float step = (parameter < 0.0 ? parameter + 8.0 : parameter) * (float(SECTOR_STEPS) / 8.0);
+    uint entry = min(uint(step), SECTOR_STEPS - 1u);
+    return mix(sectors[view.sector_first + entry], sectors[view.sector_first + entry + 1u], step - float(entry));
+}
+
+// Signed area of the part of the sub-light that lies beyond the segment a→b, seen from the centre,
+// within the segment's angle. a, b: homogeneous light coordinates. side: see `turns`.
+// A segment outside the light contributes exactly 0.
+float area_beyond(View view, vec3 a, vec3 b, float side) {
+    if (!clip_to_box(ROUND ? view.extent : vec4(-1.0, -1.0, 1.0, 1.0), a, b)) return 0.0;
+    if (!ROUND) {
+        // A square's area between centre and border is ½ per unit of perimeter.
+        float from = perimeter(a.xy);
+        float to = perimeter(b.xy);
+        float doubled = (a.x * b.y - a.y * b.x) / (a.z * b.z);
+        return 0.5 * (to - from + 8.0 * turns(from, to, side) - doubled);
+    }
+    vec2 start = a.xy / a.z;
+    vec2 end = b.xy / b.z;
+    if (!clip_to_rim(view.rim, start, end)) return 0.0;
+    float from = perimeter(start);
+    float to = perimeter(end);
+    // The table starts at direction 0 while parameters of directions just below it are negative.
+    float cut = float(from < 0.0) - float(to < 0.0);
+    float sector = sector_to(view, to) - sector_to(view, from) + view.area * (turns(from, to, side) + cut);
+    return sector - 0.5 * (start.x * end.y - start.y * end.x);
+}
+
+// Sum of `area_beyond` over the segments of one cell, for one receiver.
+float cell_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint mask) {
+    float beyond = 0.0;
+    vec2 corner = vec2(cell);
+    bool own = cell == ivec2(floor(receiver.t));
+    for (uint i = 0u; i < segment_count(mask); ++i) {
+        uint from = start_edge(mask, i);
+        uint to = end_edge(mask, i);
+        vec3 a = back_project(receiver, corner + midpoint(from) - receiver.t, start_depth(depths, from));
+        vec3 b = back_project(receiver, corner + midpoint(to) - receiver.t, end_depth(depths, to));
+        float side = own ? side_of(from, to, receiver.t - corner) : 0.0;
+        beyond += area_beyond(view, a, b, side);
+    }
+    return beyond;
+}
+
+// The samples at a cell's corners, counter-clockwise from (0, 0).
+vec4 samples_of(texture2D shadow_map, ivec2 cell) {
+    return vec4(texelFetch(shadow_map, cell, 0).x, texelFetch(shadow_map, cell + ivec2(1, 0), 0).x,
+                texelFetch(shadow_map, cell + ivec2(1, 1), 0).x, texelFetch(shadow_map, cell + ivec2(0, 1), 0).x);
+}
+
+// Share of the sub-light that is hidden, given the sum of what lies beyond the contour's segments.
+// The centre is asked of the contour itself, not of the nearest sample (trap 1).
+float occluded_share(View view, Receiver receiver, texture2D shadow_map, float beyond) {
+    ivec2 cell = ivec2(floor(receiver.t));
+    bool inside = false;
+    if (all(lessThan(uvec2(cell), uvec2(view.map_size - 1u)))) {
+        uint mask = mask_of(samples_of(shadow_map, cell), receiver.biased);
+        inside = inside_contour(mask, receiver.t - vec2(cell));
+    }
+    return clamp(((inside ? view.area : 0.0) - beyond) / view.area, 0.0, 1.0);
+}

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// A sub-light's shadow map, reverse-Z without a far plane: d = near / z.
+#include "pass.glsl"
+#include "depth.glsl"
+
+layout(binding = 0, scalar) readonly buffer Views { View views[]; };
+layout(binding = 1, scalar) readonly buffer Fits { Fit fits[]; };
+layout(binding = 2, scalar) readonly buffer Positions { vec3 positions[]; };
+layout(binding = 3, scalar) readonly buffer Texcoords { vec2 texcoords[]; };
+layout(binding = 4, scalar) readonly buffer VertexSurfaces { uint vertex_surfaces[]; };
+
+layout(location = 0) out vec2 uv;
+layout(location = 1) flat out uint surface_index;
+
+void main() {
+    View view = views[push.index];
+    vec3 p = to_face(view, positions[gl_VertexIndex] - view.center);
+    // Sample (i, j) is a texel's centre, at window position (i + ½, j + ½).
+    vec2 window = fits[push.index].focal * p.xy + (fits[push.index].center + 0.5) * p.z;
+    gl_Position = vec4(window * (2.0 / float(view.map_size)) - p.z, fits[push.index].near, p.z);
+    uv = TEXTURED ? texcoords[gl_VertexIndex] : vec2(0.0);
+    surface_index = TEXTURED ? vertex_surfaces[gl_VertexIndex] : 0u;
+}

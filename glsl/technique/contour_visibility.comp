@@ -1,0 +1,65 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Visibility pixel by pixel from every dual cell of the kernel [GBP07, as re-implemented in Yang09 §6].
+#include "pass.glsl"
+#include "depth.glsl"
+#include "light.glsl"
+#include "contour.glsl"
+#include "kernel.glsl"
+
+layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
+
+layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
+layout(binding = 1, scalar) readonly buffer Views { View views[]; };
+layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
+layout(binding = 3) uniform texture2D position_world;
+layout(binding = 4) uniform texture2D normal_world;
+layout(binding = 5) uniform texture2D shadow_map;
+layout(binding = 6, scalar) readonly buffer Kernels { Kernel kernels[]; };
+layout(binding = 7, scalar) buffer Occlusion { float occlusion[]; };
+layout(binding = 8, scalar) readonly buffer Sectors { float sectors[]; };
+layout(binding = 9, scalar) buffer CountersBlock { Counters counters; };
+#include "radial.glsl"
+
+uint cells_visited = 0u;
+uint edges_extracted = 0u;
+
+float sum_beyond(View view, Receiver receiver, Kernel kernel) {
+    ivec2 first = unpacked(kernel.first);
+    ivec2 last = unpacked(kernel.last);
+    float beyond = 0.0;
+    for (int y = first.y; y <= last.y; ++y) {
+        for (int x = first.x; x <= last.x; ++x) {
+            vec4 depths = samples_of(shadow_map, ivec2(x, y));
+            uint mask = mask_of(depths, receiver.biased);
+            ++cells_visited;
+            edges_extracted += segment_count(mask);
+            beyond += cell_beyond(view, receiver, ivec2(x, y), depths, mask);
+        }
+    }
+    return beyond;
+}
+
+void count() {
+    uint before = atomicAdd(counters.nodes_visited.x, cells_visited);
+    if (before + cells_visited < before) atomicAdd(counters.nodes_visited.y, 1u);
+    before = atomicAdd(counters.edges_extracted.x, edges_extracted);
+    if (before + edges_extracted < before) atomicAdd(counters.edges_extracted.y, 1u);
+}
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size))) return;
+    uint index = pixel.y * frame.size.x + pixel.x;
+    Kernel kernel = kernels[index];
+    if (kernel.status != KERNEL_PENUMBRA) return;
+    View view = views[push.index];
+    vec3 to_point = texelFetch(position_world, ivec2(pixel), 0).xyz - view.center;
+    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
+    Receiver receiver = project(view, fits[push.index], to_point, normal);
+    float beyond = sum_beyond(view, receiver, kernel);
+    float occluded = view.weight * occluded_share(view, receiver, shadow_map, beyond);
+    if (ACCUMULATE) occlusion[index] += occluded;
+    else occlusion[index] = occluded;
+    if (COUNT) count();
+}

@@ -1,0 +1,381 @@
+//! Instance, device and queue.
+
+use std::ffi::{CStr, CString};
+use std::mem::ManuallyDrop;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+use ash::{ext, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+
+use super::requirements::{self, Features, Limits};
+use super::validation::{self, Messages};
+use crate::error::{Error, Result};
+
+const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// How to open a device.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// A part of the device's name, in any case. None: discrete before integrated before CPU.
+    pub device: Option<String>,
+    /// Run under the Khronos validation layer with synchronization validation.
+    pub validate: bool,
+    /// Folder for the pipeline cache, which is read at opening and written at closing.
+    pub cache_folder: Option<PathBuf>,
+}
+
+/// A Vulkan device and whether it can run the engine.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct DeviceInfo {
+    pub name: String,
+    /// "discrete", "integrated", "virtual", "cpu" or "other".
+    pub kind: &'static str,
+    /// Name and version of the driver.
+    pub driver: String,
+    /// Version of Vulkan.
+    pub vulkan: String,
+    /// [invocation]
+    pub subgroup_size: u32,
+    /// The device's UUID in hexadecimal digits: names what is stored per device.
+    pub uuid: String,
+    /// What it lacks; empty = it can run the engine.
+    pub missing: Vec<String>,
+}
+
+/// An open device. Everything that lives on it keeps it open.
+pub struct Gpu {
+    _entry: ash::Entry,
+    instance: ash::Instance,
+    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    messages: Messages,
+    pub(super) device: ash::Device,
+    pub(super) debug: Option<ext::debug_utils::Device>,
+    pub(super) queue: vk::Queue,
+    /// Queue submissions need external synchronization.
+    pub(super) submission: Mutex<()>,
+    pub(super) family: u32,
+    pub(super) allocator: ManuallyDrop<Mutex<Allocator>>,
+    pub(super) cache: vk::PipelineCache,
+    cache_file: Option<PathBuf>,
+    /// [ns] Length of a timestamp tick; 0 = the queue has no timestamps.
+    pub(super) tick_ns: f64,
+    pub limits: Limits,
+    pub info: DeviceInfo,
+}
+
+/// Names a failed call.
+pub(super) fn failed(call: &str) -> impl FnOnce(vk::Result) -> Error + '_ {
+    move |result| Error::Vulkan { call: call.to_owned(), result }
+}
+
+fn load() -> Result<ash::Entry> {
+    // SAFETY: loading the system's Vulkan loader; it stays loaded while the entry lives.
+    unsafe { ash::Entry::load() }
+        .map_err(|e| Error::Unsupported(format!("no Vulkan loader ({e}): install libvulkan1 and a driver")))
+}
+
+/// An instance, with the messenger's own creation and destruction validated too.
+fn create_instance(entry: &ash::Entry, validate: bool, messages: &Messages) -> Result<(ash::Instance, bool)> {
+    // SAFETY: plain queries.
+    let (layers, extensions) = unsafe {
+        (
+            entry.enumerate_instance_layer_properties().map_err(failed("vkEnumerateInstanceLayerProperties"))?,
+            entry
+                .enumerate_instance_extension_properties(None)
+                .map_err(failed("vkEnumerateInstanceExtensionProperties"))?,
+        )
+    };
+    if validate && !layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER)) {
+        return Err(Error::Unsupported(
+            "the Khronos validation layer is not there: install vulkan-validationlayers or leave out --validate".into(),
+        ));
+    }
+    let debug = validate || extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME));
+    let application =
+        vk::ApplicationInfo::default().application_name(c"halfshade").api_version(vk::API_VERSION_1_3);
+    let enabled_layers = if validate { vec![VALIDATION_LAYER.as_ptr()] } else { vec![] };
+    let enabled_extensions = if debug { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+    let synchronization = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+    let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&synchronization);
+    let mut messenger = validation::messenger_info(messages);
+    let mut info = vk::InstanceCreateInfo::default()
+        .application_info(&application)
+        .enabled_layer_names(&enabled_layers)
+        .enabled_extension_names(&enabled_extensions);
+    if validate {
+        info = info.push_next(&mut features).push_next(&mut messenger);
+    }
+    // SAFETY: all that `info` points to outlives the call.
+    let instance = unsafe { entry.create_instance(&info, None) }.map_err(failed("vkCreateInstance"))?;
+    Ok((instance, debug))
+}
+
+fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo {
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut v11);
+    // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
+    unsafe { instance.get_physical_device_properties2(device, &mut properties) };
+    let core = properties.properties;
+    let text = |name: Result<&CStr, _>| name.map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    DeviceInfo {
+        name: text(core.device_name_as_c_str()),
+        kind: match core.device_type {
+            vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
+            vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
+            vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
+            vk::PhysicalDeviceType::CPU => "cpu",
+            _ => "other",
+        },
+        driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str())),
+        vulkan: format!(
+            "{}.{}.{}",
+            vk::api_version_major(core.api_version),
+            vk::api_version_minor(core.api_version),
+            vk::api_version_patch(core.api_version)
+        ),
+        subgroup_size: v11.subgroup_size,
+        uuid: v11.device_uuid.iter().map(|byte| format!("{byte:02x}")).collect(),
+        missing: requirements::missing(instance, device),
+    }
+}
+
+/// Every Vulkan device of the system, able to run the engine or not.
+pub fn list_devices() -> Result<Vec<DeviceInfo>> {
+    let entry = load()?;
+    let (instance, _) = create_instance(&entry, false, &Messages::default())?;
+    // SAFETY: the instance is destroyed after its last use.
+    unsafe {
+        let devices = instance.enumerate_physical_devices().map_err(failed("vkEnumeratePhysicalDevices"));
+        let list = devices.map(|devices| devices.iter().map(|&d| describe(&instance, d)).collect());
+        instance.destroy_instance(None);
+        list
+    }
+}
+
+/// The device that `wanted` names, or else the best one.
+fn pick(instance: &ash::Instance, wanted: Option<&str>) -> Result<(vk::PhysicalDevice, DeviceInfo)> {
+    // SAFETY: a plain query.
+    let devices = unsafe { instance.enumerate_physical_devices() }.map_err(failed("vkEnumeratePhysicalDevices"))?;
+    let mut found: Vec<_> = devices.into_iter().map(|device| (device, describe(instance, device))).collect();
+    if found.is_empty() {
+        return Err(Error::Unsupported("no Vulkan device: install a driver (mesa-vulkan-drivers has lavapipe)".into()));
+    }
+    let names = |list: &[(vk::PhysicalDevice, DeviceInfo)]| {
+        list.iter().map(|(_, info)| info.name.clone()).collect::<Vec<_>>().join(", ")
+    };
+    if let Some(wanted) = wanted {
+        let all = names(&found);
+        found.retain(|(_, info)| info.name.to_lowercase().contains(&wanted.to_lowercase()));
+        if found.is_empty() {
+            return Err(Error::Unsupported(format!("no Vulkan device is called \"{wanted}\"; there are: {all}")));
+        }
+    }
+    let rank = |info: &DeviceInfo| {
+        let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
+        (!info.missing.is_empty(), kinds.iter().position(|&kind| kind == info.kind))
+    };
+    found.sort_by_key(|(_, info)| rank(info));
+    let (device, info) = found.swap_remove(0);
+    if info.missing.is_empty() {
+        return Ok((device, info));
+    }
+    Err(Error::Unsupported(format!("{} cannot run the engine: it lacks {}", info.name, info.missing.join(", "))))
+}
+
+impl Gpu {
+    /// Opens a device. Errors: no Vulkan, no such device, something required is missing, or a call failed.
+    pub fn open(options: &Options) -> Result<Arc<Self>> {
+        let entry = load()?;
+        let messages = Messages::default();
+        let (instance, debug) = create_instance(&entry, options.validate, &messages)?;
+        let guard = InstanceGuard(Some(instance));
+        let instance = guard.0.as_ref().expect("taken only at the end");
+        let (physical, info) = pick(instance, options.device.as_deref())?;
+        let family = requirements::queue_family(instance, physical)
+            .ok_or_else(|| Error::Unsupported("no queue family with graphics and compute".into()))?;
+        let messenger = if options.validate {
+            let debug_instance = ext::debug_utils::Instance::new(&entry, instance);
+            // SAFETY: `messages` is kept until after the instance is destroyed.
+            let messenger = unsafe {
+                debug_instance.create_debug_utils_messenger(&validation::messenger_info(&messages), None)
+            }
+            .map_err(failed("vkCreateDebugUtilsMessengerEXT"))?;
+            Some((debug_instance, messenger))
+        } else {
+            None
+        };
+        let opened = create_device(instance, physical, family).and_then(|device| {
+            create_allocator(instance, physical, &device)
+                .inspect_err(|_| unsafe {
+                    // SAFETY: nothing was created on it.
+                    device.destroy_device(None)
+                })
+                .map(|allocator| (device, allocator))
+        });
+        let (device, allocator) = match opened {
+            Ok(opened) => opened,
+            Err(error) => {
+                if let Some((debug_instance, messenger)) = &messenger {
+                    // SAFETY: destroyed once, before its instance.
+                    unsafe { debug_instance.destroy_debug_utils_messenger(*messenger, None) };
+                }
+                return Err(error);
+            }
+        };
+        let tick_ns = tick_ns(instance, physical, family);
+        let limits = requirements::limits(instance, physical);
+        let debug = debug.then(|| ext::debug_utils::Device::new(instance, &device));
+        // SAFETY: the family has at least one queue.
+        let queue = unsafe { device.get_device_queue(family, 0) };
+        let cache_file =
+            options.cache_folder.as_ref().map(|folder| folder.join(format!("pipelines-{}.bin", info.uuid)));
+        let cache = create_cache(&device, cache_file.as_deref());
+        Ok(Arc::new(Self {
+            _entry: entry,
+            instance: guard.release(),
+            messenger,
+            messages,
+            device,
+            debug,
+            queue,
+            submission: Mutex::new(()),
+            family,
+            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            cache,
+            cache_file,
+            tick_ns,
+            limits,
+            info,
+        }))
+    }
+
+    /// The raw device, for those who record commands of their own.
+    pub fn raw(&self) -> (&ash::Instance, &ash::Device, vk::Queue, u32) {
+        (&self.instance, &self.device, self.queue, self.family)
+    }
+
+    /// A handle on the validation layer's warnings and errors that stays valid after the device is gone:
+    /// the last ones come when it is destroyed.
+    pub fn validation_messages(&self) -> Arc<Mutex<Vec<String>>> {
+        self.messages.clone()
+    }
+
+    /// Names an object for the validation layer and for frame debuggers.
+    pub(super) fn name<T: vk::Handle>(&self, object: T, name: &str) {
+        let (Some(debug), Ok(name)) = (&self.debug, CString::new(name)) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        // SAFETY: the handle belongs to this device. A name that can't be set is no loss.
+        let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+    }
+
+    /// Waits until the queue is idle; errors only if the device is lost.
+    pub fn wait(&self) -> Result<()> {
+        let _one_at_a_time = self.submission.lock();
+        // SAFETY: the queue is externally synchronized by the lock.
+        unsafe { self.device.queue_wait_idle(self.queue) }.map_err(failed("vkQueueWaitIdle"))
+    }
+
+    fn store_cache(&self) {
+        let Some(file) = &self.cache_file else { return };
+        // SAFETY: the cache is alive.
+        let Ok(data) = (unsafe { self.device.get_pipeline_cache_data(self.cache) }) else { return };
+        let Some(folder) = file.parent() else { return };
+        // A cache that can't be stored is no loss: the pipelines are built again next time.
+        let partial = file.with_extension(format!("{}.partial", std::process::id()));
+        let stored = std::fs::create_dir_all(folder)
+            .and_then(|()| std::fs::write(&partial, data))
+            .and_then(|()| std::fs::rename(&partial, file));
+        if stored.is_err() {
+            let _ = std::fs::remove_file(&partial);
+        }
+    }
+}
+
+impl Drop for Gpu {
+    fn drop(&mut self) {
+        // SAFETY: everything that lives on the device keeps an Arc of it, so nothing is left; each
+        // object is destroyed once, children before parents.
+        unsafe {
+            let _ = self.device.device_wait_idle();
+            self.store_cache();
+            self.device.destroy_pipeline_cache(self.cache, None);
+            ManuallyDrop::drop(&mut self.allocator);
+            self.device.destroy_device(None);
+            if let Some((debug, messenger)) = &self.messenger {
+                debug.destroy_debug_utils_messenger(*messenger, None);
+            }
+            self.instance.destroy_instance(None);
+        }
+    }
+}
+
+/// Destroys an instance that no device was opened on.
+struct InstanceGuard(Option<ash::Instance>);
+
+impl InstanceGuard {
+    fn release(mut self) -> ash::Instance {
+        self.0.take().expect("released once")
+    }
+}
+
+impl Drop for InstanceGuard {
+    fn drop(&mut self) {
+        if let Some(instance) = &self.0 {
+            // SAFETY: nothing was created on it, or it was destroyed before.
+            unsafe { instance.destroy_instance(None) };
+        }
+    }
+}
+
+fn create_device(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32) -> Result<ash::Device> {
+    let mut features = Features::required();
+    let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_features(&features.core)
+        .push_next(&mut features.v12)
+        .push_next(&mut features.v13);
+    // SAFETY: all that `info` points to outlives the call; the features were found to be there.
+    unsafe { instance.create_device(physical, &info, None) }.map_err(failed("vkCreateDevice"))
+}
+
+fn create_allocator(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    device: &ash::Device,
+) -> Result<Allocator> {
+    Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device: physical,
+        debug_settings: Default::default(),
+        buffer_device_address: false,
+        allocation_sizes: Default::default(),
+    })
+    .map_err(|error| Error::Memory { resource: "the allocator".into(), message: error.to_string() })
+}
+
+/// The stored pipeline cache, or an empty one; a null handle where even that fails: it is optional.
+fn create_cache(device: &ash::Device, file: Option<&std::path::Path>) -> vk::PipelineCache {
+    let stored = file.and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
+    // SAFETY: the driver checks the header of the data and ignores what is not its own.
+    unsafe {
+        device
+            .create_pipeline_cache(&vk::PipelineCacheCreateInfo::default().initial_data(&stored), None)
+            .or_else(|_| device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None))
+            .unwrap_or_default()
+    }
+}
+
+fn tick_ns(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32) -> f64 {
+    // SAFETY: plain queries on a device of this instance.
+    let (properties, families) = unsafe {
+        (
+            instance.get_physical_device_properties(physical),
+            instance.get_physical_device_queue_family_properties(physical),
+        )
+    };
+    if families[family as usize].timestamp_valid_bits == 0 { 0.0 } else { properties.limits.timestamp_period.into() }
+}

@@ -1,0 +1,323 @@
+//! Buffers and images. Each frees itself and is known by name.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use super::device::{Gpu, failed};
+use super::recorder::Recorder;
+use crate::error::{Error, Result};
+
+/// A buffer that shaders read and write, that indirect commands read, and that can be copied.
+pub struct Buffer {
+    gpu: Arc<Gpu>,
+    pub name: String,
+    /// [byte]
+    pub bytes: u64,
+    pub(super) raw: vk::Buffer,
+    allocation: Option<Allocation>,
+}
+
+/// What an image is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImageKind {
+    /// D32_SFLOAT, drawn to and sampled.
+    Depth,
+    /// RGBA32F, drawn to and sampled.
+    Vector,
+    /// RGBA8, drawn to and sampled.
+    Color,
+    /// RG32F, written by compute passes and sampled.
+    Bounds,
+}
+
+impl ImageKind {
+    pub fn format(self) -> vk::Format {
+        match self {
+            Self::Depth => vk::Format::D32_SFLOAT,
+            Self::Vector => vk::Format::R32G32B32A32_SFLOAT,
+            Self::Color => vk::Format::R8G8B8A8_UNORM,
+            Self::Bounds => vk::Format::R32G32_SFLOAT,
+        }
+    }
+
+    /// [byte]
+    pub fn texel_bytes(self) -> u64 {
+        match self {
+            Self::Depth | Self::Color => 4,
+            Self::Bounds => 8,
+            Self::Vector => 16,
+        }
+    }
+
+    fn usage(self) -> vk::ImageUsageFlags {
+        let own = match self {
+            Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            Self::Vector | Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+            Self::Bounds => vk::ImageUsageFlags::STORAGE,
+        };
+        own | vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST
+    }
+
+    pub(super) fn aspect(self) -> vk::ImageAspectFlags {
+        if self == Self::Depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
+    }
+}
+
+/// An image with one mip level, always in the layout GENERAL once it is `Recorder::initialize`d.
+pub struct Image {
+    gpu: Arc<Gpu>,
+    pub name: String,
+    pub kind: ImageKind,
+    /// [texel]
+    pub width: u32,
+    /// [texel]
+    pub height: u32,
+    pub layers: u32,
+    pub(super) raw: vk::Image,
+    pub(super) view: vk::ImageView,
+    allocation: Option<Allocation>,
+}
+
+impl Buffer {
+    /// A buffer on the device.
+    pub fn new(gpu: &Arc<Gpu>, name: &str, bytes: u64) -> Result<Self> {
+        Self::at(gpu, name, bytes, MemoryLocation::GpuOnly)
+    }
+
+    /// A buffer that the device can copy to and the host can read.
+    pub fn readback(gpu: &Arc<Gpu>, name: &str, bytes: u64) -> Result<Self> {
+        Self::at(gpu, name, bytes, MemoryLocation::GpuToCpu)
+    }
+
+    /// A buffer on the device that holds `data`. Waits for the copy.
+    pub fn with_data<T: bytemuck::Pod>(gpu: &Arc<Gpu>, name: &str, data: &[T]) -> Result<Self> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = Self::new(gpu, name, bytes.len() as u64)?;
+        if bytes.is_empty() {
+            return Ok(buffer);
+        }
+        let mut staging = Self::at(gpu, &format!("{name} (staging)"), bytes.len() as u64, MemoryLocation::CpuToGpu)?;
+        staging.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
+        let mut recorder = Recorder::new(gpu, 0)?;
+        recorder.begin()?;
+        recorder.copy_buffer("upload", &staging, &buffer);
+        recorder.submit_and_wait()?;
+        Ok(buffer)
+    }
+
+    fn at(gpu: &Arc<Gpu>, name: &str, bytes: u64, location: MemoryLocation) -> Result<Self> {
+        // Vulkan knows no empty buffers, and shaders must bind something.
+        let bytes = bytes.max(16);
+        let info = vk::BufferCreateInfo::default().size(bytes).usage(
+            vk::BufferUsageFlags::STORAGE_BUFFER
+                | vk::BufferUsageFlags::INDIRECT_BUFFER
+                | vk::BufferUsageFlags::INDEX_BUFFER
+                | vk::BufferUsageFlags::TRANSFER_SRC
+                | vk::BufferUsageFlags::TRANSFER_DST,
+        );
+        // SAFETY: `info` outlives the calls; the buffer is bound once, and destroyed by `Drop` from
+        // here on.
+        unsafe {
+            let raw = gpu.device.create_buffer(&info, None).map_err(failed(&format!("vkCreateBuffer of {name}")))?;
+            gpu.name(raw, name);
+            let mut buffer = Self { gpu: gpu.clone(), name: name.into(), bytes, raw, allocation: None };
+            let requirements = gpu.device.get_buffer_memory_requirements(raw);
+            let allocation = allocate(gpu, name, requirements, location, true)?;
+            gpu.device
+                .bind_buffer_memory(raw, allocation.memory(), allocation.offset())
+                .map_err(failed(&format!("vkBindBufferMemory of {name}")))?;
+            buffer.allocation = Some(allocation);
+            Ok(buffer)
+        }
+    }
+
+    fn mapped_mut(&mut self) -> Result<&mut [u8]> {
+        self.allocation.as_mut().and_then(|allocation| allocation.mapped_slice_mut()).ok_or_else(|| Error::Memory {
+            resource: self.name.clone(),
+            message: "the memory cannot be mapped".into(),
+        })
+    }
+
+    /// What a `readback` buffer holds, once the copy into it has finished.
+    pub fn read<T: bytemuck::Pod>(&self, count: usize) -> Result<Vec<T>> {
+        let bytes = count * size_of::<T>();
+        let mapped = self.allocation.as_ref().and_then(|allocation| allocation.mapped_slice());
+        match mapped.and_then(|slice| slice.get(..bytes)) {
+            Some(slice) => Ok(bytemuck::pod_collect_to_vec(slice)),
+            None => Err(Error::Memory {
+                resource: self.name.clone(),
+                message: format!("{bytes} bytes of it cannot be mapped"),
+            }),
+        }
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: destroyed once; whoever submitted work with it has waited for it.
+        unsafe { self.gpu.device.destroy_buffer(self.raw, None) };
+        release(&self.gpu, self.allocation.take());
+    }
+}
+
+impl Image {
+    /// An image on the device, of undefined content; `layers` > 1 makes it an array.
+    pub fn new(gpu: &Arc<Gpu>, name: &str, kind: ImageKind, size: (u32, u32), layers: u32) -> Result<Self> {
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(kind.format())
+            .extent(vk::Extent3D { width: size.0, height: size.1, depth: 1 })
+            .mip_levels(1)
+            .array_layers(layers)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(kind.usage());
+        // SAFETY: `info` outlives the calls; the image is bound once, and destroyed by `Drop` from
+        // here on.
+        unsafe {
+            let raw = gpu.device.create_image(&info, None).map_err(failed(&format!("vkCreateImage of {name}")))?;
+            gpu.name(raw, name);
+            let mut image = Self {
+                gpu: gpu.clone(),
+                name: name.into(),
+                kind,
+                width: size.0,
+                height: size.1,
+                layers,
+                raw,
+                view: vk::ImageView::null(),
+                allocation: None,
+            };
+            let requirements = gpu.device.get_image_memory_requirements(raw);
+            let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, false)?;
+            gpu.device
+                .bind_image_memory(raw, allocation.memory(), allocation.offset())
+                .map_err(failed(&format!("vkBindImageMemory of {name}")))?;
+            image.allocation = Some(allocation);
+            image.view = image.create_view()?;
+            Ok(image)
+        }
+    }
+
+    fn create_view(&self) -> Result<vk::ImageView> {
+        // The MSSM is an array whatever its number of levels; its shaders say so.
+        let array = self.kind == ImageKind::Bounds;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.raw)
+            .view_type(if array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D })
+            .format(self.kind.format())
+            .subresource_range(self.range());
+        // SAFETY: the image is alive and bound.
+        unsafe { self.gpu.device.create_image_view(&info, None) }
+            .map_err(failed(&format!("vkCreateImageView of {}", self.name)))
+    }
+
+    pub(super) fn range(&self) -> vk::ImageSubresourceRange {
+        vk::ImageSubresourceRange::default().aspect_mask(self.kind.aspect()).level_count(1).layer_count(self.layers)
+    }
+
+    /// [byte] Of its texels.
+    pub fn bytes(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height) * u64::from(self.layers) * self.kind.texel_bytes()
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: destroyed once; whoever submitted work with it has waited for it.
+        unsafe {
+            self.gpu.device.destroy_image_view(self.view, None);
+            self.gpu.device.destroy_image(self.raw, None);
+        }
+        release(&self.gpu, self.allocation.take());
+    }
+}
+
+fn allocate(
+    gpu: &Gpu,
+    name: &str,
+    requirements: vk::MemoryRequirements,
+    location: MemoryLocation,
+    linear: bool,
+) -> Result<Allocation> {
+    let lost = |message: String| Error::Memory { resource: name.to_owned(), message };
+    let mut allocator = gpu.allocator.lock().map_err(|_| lost("the allocator is gone".into()))?;
+    allocator
+        .allocate(&AllocationCreateDesc {
+            name,
+            requirements,
+            location,
+            linear,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        })
+        .map_err(|error| lost(error.to_string()))
+}
+
+fn release(gpu: &Gpu, allocation: Option<Allocation>) {
+    if let (Some(allocation), Ok(mut allocator)) = (allocation, gpu.allocator.lock()) {
+        // An allocation that can't be freed is one that the allocator does not know: nothing to free.
+        let _ = allocator.free(allocation);
+    }
+}
+
+/// A buffer or an image.
+pub enum Resource {
+    Buffer(Buffer),
+    Image(Image),
+}
+
+/// Everything that passes can bind, under the name that the shaders know it by.
+#[derive(Default)]
+pub struct Resources(BTreeMap<&'static str, Resource>);
+
+impl Resources {
+    pub fn add_buffer(&mut self, name: &'static str, buffer: Buffer) {
+        self.0.insert(name, Resource::Buffer(buffer));
+    }
+
+    pub fn add_image(&mut self, name: &'static str, image: Image) {
+        self.0.insert(name, Resource::Image(image));
+    }
+
+    pub fn get(&self, name: &str) -> Option<&Resource> {
+        self.0.get(name)
+    }
+
+    /// The named buffer. Errors: there is none.
+    pub fn buffer(&self, name: &str) -> Result<&Buffer> {
+        match self.get(name) {
+            Some(Resource::Buffer(buffer)) => Ok(buffer),
+            _ => Err(Error::Unsupported(format!("there is no buffer {name}"))),
+        }
+    }
+
+    /// The named image. Errors: there is none.
+    pub fn image(&self, name: &str) -> Result<&Image> {
+        match self.get(name) {
+            Some(Resource::Image(image)) => Ok(image),
+            _ => Err(Error::Unsupported(format!("there is no image {name}"))),
+        }
+    }
+
+    pub fn images(&self) -> impl Iterator<Item = &Image> {
+        self.0.values().filter_map(|resource| match resource {
+            Resource::Image(image) => Some(image),
+            Resource::Buffer(_) => None,
+        })
+    }
+
+    /// [byte] Name and size of each, in the order of names.
+    pub fn sizes(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.0.iter().map(|(name, resource)| {
+            let bytes = match resource {
+                Resource::Buffer(buffer) => buffer.bytes,
+                Resource::Image(image) => image.bytes(),
+            };
+            (*name, bytes)
+        })
+    }
+}

@@ -1,0 +1,167 @@
+//! What the engine needs of a device, checked one by one and reported by name.
+
+use ash::vk;
+
+/// What a device allows, as far as the engine's sizes depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// [texel] Largest side of an image.
+    pub image_side: u32,
+    /// [layer] Most layers of an image.
+    pub image_layers: u32,
+    /// [byte] Largest image (asked for the MSSM's kind).
+    pub image_bytes: u64,
+    /// [byte] Largest storage buffer that a shader can see.
+    pub buffer_bytes: u64,
+    /// [byte] Memory of the largest device-local heap.
+    pub memory_bytes: u64,
+}
+
+/// The features that are enabled: all of these are required.
+#[derive(Default)]
+pub struct Features {
+    pub core: vk::PhysicalDeviceFeatures,
+    pub v12: vk::PhysicalDeviceVulkan12Features<'static>,
+    pub v13: vk::PhysicalDeviceVulkan13Features<'static>,
+}
+
+impl Features {
+    /// What the engine uses, and nothing else.
+    pub fn required() -> Self {
+        Self {
+            core: vk::PhysicalDeviceFeatures { shader_storage_image_extended_formats: vk::TRUE, ..Default::default() },
+            v12: vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true),
+            v13: vk::PhysicalDeviceVulkan13Features::default()
+                .dynamic_rendering(true)
+                .synchronization2(true)
+                .maintenance4(true),
+        }
+    }
+}
+
+/// Formats and how each is used.
+const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 4] = [
+    (
+        vk::Format::D32_SFLOAT,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+        ),
+        "D32_SFLOAT as a sampled depth attachment",
+    ),
+    (
+        vk::Format::R32G32_SFLOAT,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+        ),
+        "R32G32_SFLOAT as a sampled storage image",
+    ),
+    (
+        vk::Format::R32G32B32A32_SFLOAT,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+        ),
+        "R32G32B32A32_SFLOAT as a sampled colour attachment",
+    ),
+    (
+        vk::Format::R8G8B8A8_UNORM,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+        ),
+        "R8G8B8A8_UNORM as a sampled colour attachment",
+    ),
+];
+
+/// [descriptor] Storage buffers that the largest pass binds.
+const STORAGE_BUFFERS: u32 = 11;
+/// [invocation] Largest work group.
+const GROUP_INVOCATIONS: u32 = 64;
+
+/// A queue family that can do everything, if there is one.
+pub fn queue_family(instance: &ash::Instance, device: vk::PhysicalDevice) -> Option<u32> {
+    // SAFETY: the device was enumerated from this instance.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(device) };
+    let all = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    families.iter().position(|family| family.queue_flags.contains(all)).map(|index| index as u32)
+}
+
+pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
+    // SAFETY: the device was enumerated from this instance.
+    let (properties, memory) = unsafe {
+        (instance.get_physical_device_properties(device), instance.get_physical_device_memory_properties(device))
+    };
+    let heaps = memory.memory_heaps_as_slice().iter();
+    // SAFETY: as above.
+    let array = unsafe {
+        instance.get_physical_device_image_format_properties(
+            device,
+            vk::Format::R32G32_SFLOAT,
+            vk::ImageType::TYPE_2D,
+            vk::ImageTiling::OPTIMAL,
+            vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED,
+            vk::ImageCreateFlags::empty(),
+        )
+    };
+    Limits {
+        image_bytes: array.map(|found| found.max_resource_size).unwrap_or(0),
+        image_side: properties.limits.max_image_dimension2_d,
+        image_layers: properties.limits.max_image_array_layers,
+        buffer_bytes: properties.limits.max_storage_buffer_range.into(),
+        memory_bytes: heaps
+            .filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL))
+            .map(|heap| heap.size)
+            .max()
+            .unwrap_or(0),
+    }
+}
+
+/// The names of everything required that the device lacks; empty = it can run the engine.
+pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<String> {
+    let mut missing = Vec::new();
+    // SAFETY: the device was enumerated from this instance.
+    let properties = unsafe { instance.get_physical_device_properties(device) };
+    if properties.api_version < vk::API_VERSION_1_3 {
+        let (major, minor) =
+            (vk::api_version_major(properties.api_version), vk::api_version_minor(properties.api_version));
+        missing.push(format!("Vulkan 1.3 (it has {major}.{minor})"));
+        return missing;
+    }
+    missing_features(instance, device, &mut missing);
+    for (format, features, name) in FORMATS {
+        // SAFETY: the device was enumerated from this instance.
+        let found = unsafe { instance.get_physical_device_format_properties(device, format) };
+        if !found.optimal_tiling_features.contains(features) {
+            missing.push(name.into());
+        }
+    }
+    let limits = &properties.limits;
+    if limits.max_per_stage_descriptor_storage_buffers < STORAGE_BUFFERS {
+        missing.push(format!("maxPerStageDescriptorStorageBuffers ≥ {STORAGE_BUFFERS}"));
+    }
+    if limits.max_compute_work_group_invocations < GROUP_INVOCATIONS {
+        missing.push(format!("maxComputeWorkGroupInvocations ≥ {GROUP_INVOCATIONS}"));
+    }
+    if queue_family(instance, device).is_none() {
+        missing.push("a queue family with graphics and compute".into());
+    }
+    missing
+}
+
+fn missing_features(instance: &ash::Instance, device: vk::PhysicalDevice, missing: &mut Vec<String>) {
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
+    let mut found = vk::PhysicalDeviceFeatures2::default().push_next(&mut v12).push_next(&mut v13);
+    // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
+    unsafe { instance.get_physical_device_features2(device, &mut found) };
+    let core = found.features;
+    for (have, name) in [
+        (core.shader_storage_image_extended_formats, "shaderStorageImageExtendedFormats"),
+        (v12.scalar_block_layout, "scalarBlockLayout"),
+        (v13.dynamic_rendering, "dynamicRendering"),
+        (v13.synchronization2, "synchronization2"),
+        (v13.maintenance4, "maintenance4"),
+    ] {
+        if have == vk::FALSE {
+            missing.push(name.into());
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! The structs and constants that host and shaders both see. This is their one source: `build.rs`
+//! includes this file and writes the GLSL declarations from it; a test compares every offset with
+//! what the compiled shaders say.
+//!
+//! The types carry GLSL's names and have the size and alignment of `layout(scalar)`.
+
+#![allow(non_camel_case_types)]
+
+use bytemuck::{Pod, Zeroable};
+
+pub type float = f32;
+pub type uint = u32;
+pub type vec2 = [f32; 2];
+pub type vec3 = [f32; 3];
+pub type vec4 = [f32; 4];
+pub type uvec2 = [u32; 2];
+pub type uvec3 = [u32; 3];
+pub type uvec4 = [u32; 4];
+
+/// A field as GLSL sees it.
+pub struct Field {
+    pub name: &'static str,
+    /// A GLSL type name.
+    pub glsl: &'static str,
+    /// Number of array elements; 0 = not an array.
+    pub count: usize,
+    /// [byte] From the start of the struct.
+    pub offset: usize,
+}
+
+/// A struct as GLSL sees it.
+pub struct Layout {
+    pub name: &'static str,
+    pub fields: &'static [Field],
+    /// [byte]
+    pub size: usize,
+}
+
+macro_rules! field_type {
+    ($ty:ident) => { $ty };
+    ($ty:ident $count:expr) => { [$ty; $count] };
+}
+
+macro_rules! field_count {
+    () => { 0 };
+    ($count:expr) => { $count };
+}
+
+macro_rules! shared {
+    ($($(#[$doc:meta])* struct $name:ident {
+        $($(#[$field_doc:meta])* $field:ident: $ty:ident $([$count:expr])?,)*
+    })*) => {
+        $($(#[$doc])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: field_type!($ty $($count)?),)*
+        })*
+
+        /// Every shared struct, for the GLSL generator and the layout test.
+        pub const LAYOUTS: &[Layout] = &[$(Layout {
+            name: stringify!($name),
+            fields: &[$(Field {
+                name: stringify!($field),
+                glsl: stringify!($ty),
+                count: field_count!($($count)?),
+                offset: std::mem::offset_of!($name, $field),
+            },)*],
+            size: std::mem::size_of::<$name>(),
+        },)*];
+    };
+}
+
+macro_rules! shared_constants {
+    ($($(#[$doc:meta])* $name:ident: $ty:ident = $value:expr;)*) => {
+        $($(#[$doc])* pub const $name: $ty = $value;)*
+
+        /// Name, GLSL type and value of every shared constant, for the GLSL generator.
+        pub fn constants() -> Vec<(&'static str, &'static str, String)> {
+            vec![$((stringify!($name), stringify!($ty), format!("{:?}", $value)),)*]
+        }
+    };
+}
+
+shared_constants! {
+    /// Most levels an MSSM can have: 8192 = 2^13, and the level of single cells.
+    LEVELS_MAX: uint = 14;
+    /// [invocation] Work group of passes over lists and triangles.
+    GROUP_SIZE: uint = 64;
+    /// [work group] Lists longer than this many groups wrap into a second dispatch dimension, since
+    /// a device may allow no more than 65535 groups in one.
+    GROUPS_PER_ROW: uint = 32768;
+    /// [pixel] Side of the work group of passes over the image and of the MSSM's.
+    TILE_SIZE: uint = 8;
+    /// tan 60°: the front face of a sub-light holds the receivers that lie within it of the axis in
+    /// both directions; the side faces hold the rest.
+    FRONT_REACH: float = 1.7320508;
+    /// Tangent of the widest angle a map reaches. Casters beyond it (an occluder nearer to the light
+    /// plane than a 16th of its distance from the sub-light's centre) are cut off.
+    TANGENT_MAX: float = 16.0;
+    /// Number of entries of a sub-light's sector table, less one.
+    SECTOR_STEPS: uint = 1024;
+    /// [share of d_p] Largest slope bias: receivers at grazing angles would otherwise lose their
+    /// contact shadows altogether.
+    BIAS_SLOPE_MAX: float = 0.05;
+    /// [share of d_p] Bias for the rounding of positions and depths, per unit of the coordinates'
+    /// magnitude over the receiver's depth.
+    BIAS_ROUNDING: float = 1e-6;
+    /// Kernel of a pixel that no occluder of this view can shadow.
+    KERNEL_LIT: uint = 0;
+    /// Kernel of a pixel whose sub-light is hidden altogether.
+    KERNEL_UMBRA: uint = 1;
+    /// Kernel of a pixel that must be integrated.
+    KERNEL_PENUMBRA: uint = 2;
+    /// Kernel of a pixel that this view has nothing to say about: no surface there, another face's
+    /// receiver, or one that faces away.
+    KERNEL_NONE: uint = 3;
+}
+
+shared! {
+    /// The camera and the size of the scene.
+    struct Frame {
+        /// [scene units] Relative to the scene's origin, as all positions on the device.
+        eye: vec3,
+        /// Unit vector divided by tan(fov / 2) · aspect.
+        right: vec3,
+        /// Unit vector divided by tan(fov / 2).
+        up: vec3,
+        /// Unit vector.
+        forward: vec3,
+        /// [scene units] Distance of the near plane.
+        near: float,
+        /// [pixel]
+        size: uvec2,
+        /// [triangle]
+        opaque_count: uint,
+        /// [triangle]
+        masked_count: uint,
+    }
+
+    /// A material as the alpha test and the shading see it.
+    struct Surface {
+        /// [0, 1] Linear RGB and alpha.
+        base_color: vec4,
+        /// [0, 1] Texels whose alpha is below are holes; 0 = none.
+        alpha_cutoff: float,
+        /// [texel] First texel in `texels`.
+        texture_first: uint,
+        /// [texel] 0 = no texture.
+        texture_size: uvec2,
+        /// `Wrap` of u, of v.
+        wrap: uvec2,
+        /// 1 = bilinear, 0 = nearest.
+        linear: uint,
+        /// 1 = the camera sees both sides.
+        double_sided: uint,
+    }
+
+    /// A whole light: what `resolve` and `shade` need of it.
+    struct Light {
+        /// [scene units]
+        center: vec3,
+        /// Unit vectors in the light plane.
+        u: vec3,
+        v: vec3,
+        /// Unit vector along which it shines.
+        n: vec3,
+        /// [scene units] Half sizes along u and v; the radius, twice, for a disc.
+        half_size: vec2,
+        /// 1 = disc.
+        round: uint,
+        /// Sum of the weights of its views' sub-lights, summed in f32 in the order of the views.
+        weight_sum: float,
+        /// Linear RGB radiance.
+        radiance: vec3,
+        /// [view] Its first view and how many it has.
+        view_first: uint,
+        view_count: uint,
+    }
+
+    /// One face of one sub-light, as the host knows it (`algorithm.md` §1).
+    struct View {
+        /// [scene units] The sub-light's centre.
+        center: vec3,
+        /// Unit vectors of the map: right × up = forward.
+        right: vec3,
+        up: vec3,
+        forward: vec3,
+        /// Unit vectors of the light plane divided by the sub-light's half sizes.
+        light_u: vec3,
+        light_v: vec3,
+        /// Unit vector along which the light shines.
+        light_n: vec3,
+        /// [scene units] The sub-light's half sizes.
+        half_size: vec2,
+        /// [half sizes] Where the sub-light begins and ends, seen from its centre: −1, −1, 1, 1 unless
+        /// a disc's rim cuts it.
+        extent: vec4,
+        /// [half sizes] Centre and radius of the disc that bounds it, if one does.
+        rim: vec3,
+        /// [half sizes²] Area.
+        area: float,
+        /// What it adds to the light's visibility, before the division by the light's `weight_sum`.
+        weight: float,
+        /// First entry of its sector table.
+        sector_first: uint,
+        /// 0 = front; 1, 2 = along ±u; 3, 4 = along ±v.
+        face: uint,
+        /// The front face holds receivers within this tangent of the axis: `FRONT_REACH`, or
+        /// infinity where there are no side faces.
+        reach: float,
+        /// [texel] Width and height of the shadow map.
+        map_size: uint,
+        /// [texel] Slope bias.
+        bias: float,
+        /// [level] Number of MSSM levels that there is memory for.
+        levels_max: uint,
+    }
+
+    /// What the device finds out about a view: bounds, then the projection fitted to them, then the
+    /// work that is left (`algorithm.md` §10). All zero at the start of a frame.
+    ///
+    /// Bounds are reduced by `atomicMax` of order-preserving integers; a lower bound is the upper
+    /// bound of the negated value, so that 0 is "nothing yet" for all.
+    struct Fit {
+        /// [pixel] Receivers in this view.
+        receiver_count: uint,
+        /// [scene units] Upper bounds of x, y, z, −x, −y, −z over receivers in the face's frame.
+        receiver_bounds: uint [6],
+        /// Upper bounds of the slopes of the four planes between light and receivers: +x, +y, −x, −y.
+        receiver_slopes: uint [4],
+        /// Upper bounds of x/z, y/z, −x/z, −y/z and −z over casters.
+        caster_bounds: uint [5],
+        /// VkDrawIndexedIndirectCommand of opaque and of masked casters.
+        opaque_draw: uint [5],
+        masked_draw: uint [5],
+        /// [scene units] Depth d = near / z.
+        near: float,
+        /// [texel] t = focal · tangent + center.
+        focal: vec2,
+        center: vec2,
+        /// [level] Number of MSSM levels built.
+        level_count: uint,
+        /// VkDispatchIndirectCommand of each pass.
+        level_groups: uvec3 [LEVELS_MAX as usize],
+        kernel_groups: uvec3,
+        classify_groups: uvec3,
+    }
+
+    /// Lengths of a view's lists and the dispatches that work them off. All zero at the start of a frame.
+    struct Lists {
+        /// VkDispatchIndirectCommand of each list.
+        packet_groups: uvec3,
+        pixel_groups: uvec3,
+        packet_count: uint,
+        pixel_count: uint,
+    }
+
+    /// A pixel's kernel: the dual cells that its sub-light can project to [Yang09 eq. 1].
+    struct Kernel {
+        /// One of `KERNEL_…`.
+        status: uint,
+        /// [cell] First and last cell, x | y << 16.
+        first: uint,
+        last: uint,
+        /// Depth range of the kernel.
+        depth_min: float,
+        depth_max: float,
+    }
+
+    /// A coherent packet [Yang09 §4.1].
+    struct Packet {
+        /// Position in the grid of packets, row by row.
+        index: uint,
+        /// [cell] Extended kernel: first and last cell, x | y << 16.
+        first: uint,
+        last: uint,
+        /// Biased depth range of its penumbra pixels.
+        depth_min: float,
+        depth_max: float,
+        /// Least depth of them without the bias: that of the farthest receiver.
+        depth_far: float,
+        /// [texel] Box of its penumbra pixels' t_p: x and y of the lower, then the upper corner.
+        centers: vec4,
+    }
+
+    /// `--counters`, summed over all views.
+    struct Counters {
+        pixels: uint,
+        lit: uint,
+        umbra: uint,
+        penumbra: uint,
+        packets: uint,
+        coherent_packets: uint,
+        reprocessed_packets: uint,
+        /// 64-bit counts: low word, high word.
+        nodes_visited: uvec2,
+        edges_extracted: uvec2,
+    }
+
+    /// What a pass is told when it is recorded.
+    struct Push {
+        /// Index of the view, or of the light for passes that run per light.
+        index: uint,
+        /// MSSM level to build.
+        level: uint,
+    }
+
+    /// The cost model of the classification [Yang09 eq. 6]; Q_n = 1.
+    struct Costs {
+        edge: float,
+        visibility: float,
+    }
+
+    /// How `shade` turns radiance into a picture.
+    struct Exposure {
+        /// Factor on radiance.
+        scale: float,
+        /// [radiance] Constant light from everywhere.
+        ambient: float,
+        light_count: uint,
+    }
+}

@@ -1,0 +1,187 @@
+//! A light cut into split × split sub-lights (`algorithm.md` §1, §3).
+
+use glam::{DVec2, DVec3};
+
+use crate::scene::{AreaLight, LightShape};
+use crate::shared::SECTOR_STEPS;
+
+/// One part of a light: the unit that has a shadow map of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SubLight {
+    /// [scene units, world]
+    pub center: DVec3,
+    /// [scene units] Half sizes along the light's u and v.
+    pub half_size: DVec2,
+    /// [half sizes] Lower and upper corner of its box, seen from its centre.
+    pub extent: (DVec2, DVec2),
+    /// [half sizes] Centre and radius of the disc that bounds it; None = the box alone does.
+    pub rim: Option<(DVec2, f64)>,
+    /// [half sizes²] Area; its weight among the light's parts, which all have the same half sizes.
+    pub area: f64,
+}
+
+/// The light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
+/// A light without extent has one part without extent.
+pub fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {
+    let (u, v, _) = light.frame();
+    let (half_u, half_v) = light.half_size();
+    let split = if light.is_point() { 1 } else { split };
+    let half_size = DVec2::new(half_u, half_v) / f64::from(split);
+    let cells = (0..split).flat_map(|row| (0..split).map(move |column| (column, row)));
+    cells
+        .filter_map(|(column, row)| {
+            // [half sizes of the part] The cell's centre, seen from the light's.
+            let cell = DVec2::new(f64::from(2 * column + 1), f64::from(2 * row + 1)) - f64::from(split);
+            let shape = match light.shape {
+                LightShape::Rect { .. } => Some((DVec2::ZERO, None)),
+                LightShape::Disc { .. } => cut_by_disc(cell, f64::from(split)),
+            };
+            let (shift, rim) = shape?;
+            let at = (cell + shift) * half_size;
+            let mut part = SubLight {
+                center: light.center + u * at.x + v * at.y,
+                half_size,
+                extent: (DVec2::NEG_ONE - shift, DVec2::ONE - shift),
+                rim,
+                area: 4.0,
+            };
+            if rim.is_some() {
+                part.area = part.sectors()[SECTOR_STEPS as usize].into();
+            }
+            (part.area > 1e-6).then_some(part)
+        })
+        .collect()
+}
+
+/// Where the centre of a cell of a disc's grid has to move, and the disc seen from there. None: nothing
+/// of the cell lies in the disc. `cell`: its centre; it reaches 1 to each side; `radius`: the disc's.
+fn cut_by_disc(cell: DVec2, radius: f64) -> Option<(DVec2, Option<(DVec2, f64)>)> {
+    if (cell.abs() + DVec2::ONE).length() <= radius {
+        return Some((DVec2::ZERO, None));
+    }
+    // A centre inside the part is all that the radial integration asks for: the centroid of samples.
+    const SAMPLES: u32 = 64;
+    let (mut sum, mut count) = (DVec2::ZERO, 0);
+    for i in 0..SAMPLES * SAMPLES {
+        let at = (DVec2::new(f64::from(i % SAMPLES), f64::from(i / SAMPLES)) + 0.5) * (2.0 / f64::from(SAMPLES)) - 1.0;
+        if (cell + at).length() < radius {
+            sum += at;
+            count += 1;
+        }
+    }
+    if count == 0 {
+        return None;
+    }
+    let shift = sum / f64::from(count);
+    Some((shift, Some((-cell - shift, radius))))
+}
+
+impl SubLight {
+    /// [half sizes²] Area swept from direction 0 up to each of `SECTOR_STEPS` + 1 equally spaced perimeter
+    /// parameters, 0 to 8.
+    pub fn sectors(&self) -> Vec<f32> {
+        const SUBSTEPS: u32 = 8;
+        let mut table = vec![0.0f32];
+        let mut swept = 0.0;
+        let step = 8.0 / f64::from(SECTOR_STEPS * SUBSTEPS);
+        for entry in 0..SECTOR_STEPS {
+            for substep in 0..SUBSTEPS {
+                let from = f64::from(entry * SUBSTEPS + substep) * step;
+                // Simpson's rule on ½ ρ² dθ.
+                swept += (self.density(from) + 4.0 * self.density(from + 0.5 * step) + self.density(from + step))
+                    * step
+                    / 6.0;
+            }
+            table.push(swept as f32);
+        }
+        table
+    }
+
+    /// ½ ρ² dθ/dP at perimeter parameter P: with a direction q on the unit square, ρ = s |q| where s q
+    /// lies on the border, and |q|² dθ/dP = 1.
+    fn density(&self, parameter: f64) -> f64 {
+        0.5 * self.border(direction(parameter)).powi(2)
+    }
+
+    /// How many times `direction` reaches from the centre to the border.
+    fn border(&self, direction: DVec2) -> f64 {
+        let (lower, upper) = self.extent;
+        let mut reach = f64::INFINITY;
+        for axis in 0..2 {
+            if direction[axis] != 0.0 {
+                let side = if direction[axis] > 0.0 { upper[axis] } else { lower[axis] };
+                reach = reach.min(side / direction[axis]);
+            }
+        }
+        if let Some((center, radius)) = self.rim {
+            let along = center.dot(direction);
+            let square = direction.length_squared();
+            let root = along * along - square * (center.length_squared() - radius * radius);
+            reach = reach.min((along + root.max(0.0).sqrt()) / square);
+        }
+        reach
+    }
+}
+
+/// The point of the unit square's border with perimeter parameter P: 0 at +x, 2 at +y, 4 at −x, 6 at −y.
+fn direction(parameter: f64) -> DVec2 {
+    let p = parameter.rem_euclid(8.0);
+    match p {
+        p if p < 1.0 => DVec2::new(1.0, p),
+        p if p < 3.0 => DVec2::new(2.0 - p, 1.0),
+        p if p < 5.0 => DVec2::new(-1.0, 4.0 - p),
+        p if p < 7.0 => DVec2::new(p - 6.0, -1.0),
+        p => DVec2::new(1.0, p - 8.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn disc(radius: f64) -> AreaLight {
+        AreaLight {
+            name: String::new(),
+            center: DVec3::new(1.0, 2.0, 3.0),
+            shape: LightShape::Disc { normal: DVec3::NEG_Y, radius },
+            color: Vec3::ONE,
+            intensity: None,
+        }
+    }
+
+    #[test]
+    fn parts_of_a_disc_add_up_to_it() {
+        for split in 1..=16 {
+            let parts = sub_lights(&disc(0.5), split);
+            let area: f64 = parts.iter().map(|p| p.area * p.half_size.x * p.half_size.y).sum();
+            // The sector tables are f32 and Simpson's rule meets kinks: 1e-6 of the whole.
+            assert!((area - std::f64::consts::PI * 0.25).abs() < 1e-6, "split {split}: {area}");
+        }
+    }
+
+    #[test]
+    fn the_sectors_of_a_whole_disc_are_angles() {
+        let part = &sub_lights(&disc(1.0), 1)[0];
+        let table = part.sectors();
+        for (i, swept) in table.iter().enumerate() {
+            let parameter = 8.0 * i as f64 / f64::from(SECTOR_STEPS);
+            let q = direction(parameter);
+            let angle = if i as u32 == SECTOR_STEPS { std::f64::consts::TAU } else { q.y.atan2(q.x).rem_euclid(std::f64::consts::TAU) };
+            assert!((f64::from(*swept) - 0.5 * angle).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn centres_lie_inside_their_parts() {
+        for split in 2..=16 {
+            for part in sub_lights(&disc(1.0), split) {
+                let (lower, upper) = part.extent;
+                assert!(lower.max_element() < 0.0 && upper.min_element() > 0.0);
+                if let Some((center, radius)) = part.rim {
+                    assert!(center.length() < radius);
+                }
+            }
+        }
+    }
+}
