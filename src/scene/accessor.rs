@@ -1,7 +1,8 @@
 //! Reading accessors: ranges are checked once, when an accessor is opened; elements are read in place.
 
+use gltf::json::accessor::sparse::Sparse as SparseJson;
 use gltf::json::accessor::{ComponentType, GenericComponentType, IndexComponentType, Type};
-use gltf::json::validation::Checked;
+use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Accessor as AccessorJson, Index};
 
 use super::document::{Document, label};
@@ -68,43 +69,15 @@ impl<'a> Accessor<'a> {
             }
         };
         let element = component.size() * shape.multiplicity();
-        let range = |view, offset: u64, count: u64, element: usize| {
-            strided(document, view, offset, count, element, &name)
-        };
+        let offset = json.byte_offset.unwrap_or_default().0;
         let dense = json
             .buffer_view
-            .map(|view| {
-                range(
-                    view,
-                    json.byte_offset.unwrap_or_default().0,
-                    json.count.0,
-                    element,
-                )
-            })
+            .map(|view| strided(document, view, offset, json.count.0, element, &name))
             .transpose()?;
         let sparse = json
             .sparse
             .as_ref()
-            .map(|sparse| {
-                let Checked::Valid(IndexComponentType(index_type)) = sparse.indices.component_type
-                else {
-                    return Err(
-                        document.error(format!("{name}: its sparse indices have no valid type"))
-                    );
-                };
-                let (indices, values, count) = (&sparse.indices, &sparse.values, sparse.count.0);
-                Ok(Sparse {
-                    indices: range(
-                        indices.buffer_view,
-                        indices.byte_offset.0,
-                        count,
-                        index_type.size(),
-                    )?,
-                    index_type,
-                    values: range(values.buffer_view, values.byte_offset.0, count, element)?,
-                    count: count as usize,
-                })
-            })
+            .map(|sparse| Sparse::open(document, sparse, element, &name))
             .transpose()?;
         let count = usize::try_from(json.count.0)
             .map_err(|_| document.error(format!("{name}: holds too many elements")))?;
@@ -141,7 +114,24 @@ impl<'a> Accessor<'a> {
     }
 }
 
-impl Sparse<'_> {
+impl<'a> Sparse<'a> {
+    /// Opens the sparse part of the accessor `name`, whose elements are `element` [byte] wide.
+    fn open(document: &'a Document, json: &SparseJson, element: usize, name: &str) -> Result<Self> {
+        let (indices, values, count) = (&json.indices, &json.values, json.count.0);
+        let Checked::Valid(IndexComponentType(index_type)) = indices.component_type else {
+            return Err(document.error(format!("{name}: its sparse indices have no valid type")));
+        };
+        let range = |view, offset: USize64, element| {
+            strided(document, view, offset.0, count, element, name)
+        };
+        Ok(Self {
+            indices: range(indices.buffer_view, indices.byte_offset, index_type.size())?,
+            index_type,
+            values: range(values.buffer_view, values.byte_offset, element)?,
+            count: count as usize,
+        })
+    }
+
     /// Where among the values the replacement of an element stands. (The indices increase strictly, says
     /// glTF; where they do not, some replacements are not found.)
     fn find(&self, index: usize) -> Option<usize> {

@@ -42,14 +42,17 @@ pub(super) fn label(kind: &str, index: usize, name: Option<&str>) -> String {
     }
 }
 
+/// Borrowed from the file where it holds them as they are.
+type Bytes<'a> = Cow<'a, [u8]>;
+
 /// A parsed glTF file and the bytes of its buffers, loaded when first asked for.
 pub(super) struct Document<'a> {
     path: &'a Path,
     pub root: Root,
     /// One per node: node space to its parent's.
     pub transforms: Vec<DAffine3>,
-    binary: Option<Cow<'a, [u8]>>,
-    buffers: Vec<OnceCell<Cow<'a, [u8]>>>,
+    binary: Option<Bytes<'a>>,
+    buffers: Vec<OnceCell<Bytes<'a>>>,
 }
 
 impl<'a> Document<'a> {
@@ -194,7 +197,7 @@ impl<'a> Document<'a> {
 }
 
 /// The JSON text and the binary chunk of a .glb, or all of a .gltf.
-fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Cow<'a, [u8]>, Option<Cow<'a, [u8]>>)> {
+fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Bytes<'a>, Option<Bytes<'a>>)> {
     if !bytes.starts_with(b"glTF") {
         return Ok((bytes.into(), None));
     }

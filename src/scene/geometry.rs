@@ -10,6 +10,7 @@ use gltf::json::{Index, Material, Mesh};
 
 use super::accessor::Accessor;
 use super::document::{Document, label};
+use super::gltf::Limits;
 use super::material::TextureUse;
 use super::notes::Notes;
 use crate::Result;
@@ -25,19 +26,21 @@ pub(super) struct Geometry {
     pub triangles: Vec<[u32; 3]>,
     /// One per triangle; None = glTF's default material.
     pub materials: Vec<Option<Index<Material>>>,
-    /// How many more triangles may be read, so that neither memory nor time run away.
-    budget: usize,
+    /// How many more triangles and primitives may be read, so that neither memory nor time run away.
+    triangles_left: usize,
+    primitives_left: usize,
 }
 
 impl Geometry {
-    pub fn new(max_triangles: usize) -> Self {
+    pub fn new(limits: &Limits) -> Self {
         Self {
             positions: Vec::new(),
             texcoords: Vec::new(),
             triangles: Vec::new(),
             materials: Vec::new(),
             // Vertices, at most three per triangle, are numbered with 32 bits.
-            budget: max_triangles.min(u32::MAX as usize / 3),
+            triangles_left: limits.max_triangles.min(u32::MAX as usize / 3),
+            primitives_left: limits.max_primitives,
         }
     }
 
@@ -54,18 +57,29 @@ impl Geometry {
     ) -> Result<()> {
         let json = document.get(mesh, "mesh", "the node tree")?;
         let name = label("mesh", mesh.value(), json.name.as_deref());
+        let spend = |left: &mut usize, count, what| {
+            *left = left.checked_sub(count).ok_or_else(|| {
+                document.error(format!(
+                    "{name}: the scene exceeds the limit on {what} (instances counted)"
+                ))
+            })?;
+            Ok(())
+        };
+        spend(
+            &mut self.primitives_left,
+            json.primitives.len(),
+            "primitives",
+        )?;
         for primitive in &json.primitives {
             note_ignored(primitive, &name, notes);
             let Some(source) = Source::open(document, primitive, &name, notes)? else {
                 continue;
             };
-            // Empty primitives count too: an instance of nothing still takes time.
-            let count = source.triangle_count().max(1);
-            self.budget = self.budget.checked_sub(count).ok_or_else(|| {
-                document.error(format!(
-                    "{name}: the scene exceeds the limit on triangles (instances counted)"
-                ))
-            })?;
+            spend(
+                &mut self.triangles_left,
+                source.triangle_count(),
+                "triangles",
+            )?;
             self.add_primitive(document, &source, world, primitive.material)?;
         }
         Ok(())

@@ -33,6 +33,8 @@ pub struct LoadOptions {
 pub struct Limits {
     /// Triangles, every instance of a mesh counted. Default: 2²⁶ (about 4 GiB).
     pub max_triangles: usize,
+    /// Primitives, every instance of a mesh counted: empty ones take time too. Default: 2²².
+    pub max_primitives: usize,
     /// [texel] Width and height of a texture. Default: 16384.
     pub max_texture_side: u32,
     /// [texel] All textures together, 4 bytes each. Default: 2²⁸ (1 GiB).
@@ -43,6 +45,7 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             max_triangles: 1 << 26,
+            max_primitives: 1 << 22,
             max_texture_side: 16384,
             max_texels: 1 << 28,
         }
@@ -65,7 +68,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
 pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> {
     let document = Document::parse(path, bytes)?;
     let mut notes = Notes::default();
-    let mut geometry = Geometry::new(options.limits.max_triangles);
+    let mut geometry = Geometry::new(&options.limits);
     let placed = walk(&document, options.scene)?;
     for place in &placed {
         let node = document.get(place.node, "node", "the node tree")?;

@@ -66,7 +66,7 @@ struct LightFile {
     #[serde(default = "white")]
     color: [f32; 3],
     intensity: Option<f32>,
-    texture: Option<IgnoredAny>,
+    texture: Option<serde_json::Value>,
 }
 
 fn y_axis() -> [f64; 3] {

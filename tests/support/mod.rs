@@ -193,3 +193,70 @@ pub fn corners(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
 pub fn noted(scene: &Scene, text: &str) -> bool {
     scene.notes.iter().any(|note| note.contains(text))
 }
+
+/// A triangle with every kind of object that the loader follows.
+pub fn textured_triangle(image: &[u8]) -> Gltf {
+    let mut gltf = Gltf::new();
+    let texture = gltf.texture(image);
+    gltf.push("samplers", json!({"magFilter": 9729}));
+    gltf.json["textures"][texture]["sampler"] = 0.into();
+    let transform = json!({"offset": [0.5, 0.5], "rotation": 0.5});
+    let info = json!({"index": texture, "extensions": {"KHR_texture_transform": transform}});
+    gltf.push(
+        "materials",
+        json!({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorTexture": info}}),
+    );
+    let position = gltf.positions(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
+    let texcoord = gltf.texcoords(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
+    let indices = gltf.accessor(&[0, 1, 2, 3], U8, "SCALAR", 4);
+    let (slots, values) = (gltf.view(&[3]), gltf.view(&bytes_of(&[1.0, 2.0, 3.0])));
+    gltf.json["accessors"][position]["sparse"] = json!({
+        "count": 1, "indices": {"bufferView": slots, "componentType": U8},
+        "values": {"bufferView": values},
+    });
+    let attributes = json!({"POSITION": position, "TEXCOORD_0": texcoord});
+    gltf.mesh(json!({"attributes": attributes, "indices": indices, "mode": 5, "material": 0}));
+    gltf.json["extensions"]["EXT_lights_area"]["lights"] = json!([{"type": "rect", "size": 2.0}]);
+    gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([{"type": "point"}]);
+    gltf.push(
+        "cameras",
+        json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}),
+    );
+    gltf.node(json!({"camera": 0, "extensions": {"EXT_lights_area": {"light": 0}}}));
+    gltf.node(
+        json!({"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+        "extensions": {"KHR_lights_punctual": {"light": 0}}}),
+    );
+    gltf
+}
+
+/// The corners of a unit square, in the order of a strip.
+pub const SQUARE: [[f32; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [1.0, 1.0, 0.0],
+];
+
+/// A mesh of the square's corners with further properties of the primitive.
+pub fn square(primitive: Value) -> Gltf {
+    let mut gltf = Gltf::new();
+    let position = gltf.positions(&SQUARE);
+    add_primitive(&mut gltf, position, primitive);
+    gltf
+}
+
+/// A mesh of one primitive with these positions.
+pub fn add_primitive(gltf: &mut Gltf, position: usize, mut primitive: Value) {
+    primitive["attributes"]["POSITION"] = position.into();
+    gltf.mesh(primitive);
+}
+
+/// A material with this base-colour texture and further properties of the texture's use.
+pub fn textured(gltf: &mut Gltf, texture: usize, mut info: Value) -> usize {
+    info["index"] = texture.into();
+    gltf.push(
+        "materials",
+        json!({"pbrMetallicRoughness": {"baseColorTexture": info}}),
+    )
+}

@@ -1,0 +1,285 @@
+//! Malformed and hostile glTF: one clear error, no panic, no hang, no allocation out of proportion.
+
+mod support;
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use halfshade::scene::gltf::{Limits, LoadOptions, load, parse};
+use serde_json::json;
+use support::*;
+
+fn error_of(bytes: &[u8]) -> String {
+    let loaded = parse(Path::new("test.glb"), bytes, &LoadOptions::default());
+    loaded.expect_err("this file must be refused").to_string()
+}
+
+#[test]
+fn files_that_are_no_gltf() {
+    assert!(error_of(b"").contains("is not a glTF file"));
+    assert!(error_of(b"solid cube").contains("is not a glTF file"));
+    assert!(error_of(br#"{"asset": {"version": "1.0"}}"#).contains("only 2.x"));
+    assert!(error_of(br#"{"asset": {"version": "2.0"}}"#).contains("no scene 0"));
+    let folder = tempfile::tempdir().unwrap();
+    assert!(load(folder.path(), &LoadOptions::default()).is_err());
+    assert!(load(&folder.path().join("none.glb"), &LoadOptions::default()).is_err());
+    assert!(load(Path::new("/dev/zero"), &LoadOptions::default()).is_err());
+}
+
+#[test]
+fn truncated_glbs() {
+    let glb = Gltf::triangle().to_glb();
+    for length in 0..glb.len() {
+        let message = error_of(&glb[..length]);
+        assert!(
+            message.starts_with("test.glb: is not a"),
+            "{length}: {message}"
+        );
+    }
+    // A length in the header that is shorter than the header.
+    let mut broken = glb;
+    broken[8..12].copy_from_slice(&3u32.to_le_bytes());
+    assert!(error_of(&broken).contains("header is broken"));
+}
+
+#[test]
+fn paths_stay_in_the_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    let mut gltf = Gltf::triangle();
+    std::fs::write(folder.path().join("data.bin"), &gltf.bytes).unwrap();
+    std::os::unix::fs::symlink("../data.bin", inner.join("link.bin")).unwrap();
+    let path = inner.join("scene.gltf");
+    let absolute = folder.path().join("data.bin").display().to_string();
+    for uri in [
+        "../data.bin",
+        "./../data.bin",
+        "a/../../data.bin",
+        "%2e%2e/data.bin",
+        "..%2fdata.bin",
+        "%2E%2E%2Fdata.bin",
+        "..\\data.bin",
+        "%2e%2e%5Cdata.bin",
+        "%2Fetc/hostname",
+        "//host/data.bin",
+        "file:///etc/hostname",
+        "https://example.com/data.bin",
+        "C:/data.bin",
+        "link.bin",
+        "",
+        "..",
+        "%00",
+        "%ff",
+        &absolute,
+    ] {
+        gltf.json["buffers"][0]["uri"] = uri.into();
+        std::fs::write(&path, serde_json::to_vec(&gltf.json).unwrap()).unwrap();
+        let message = load(&path, &LoadOptions::default())
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains("refuses to read"), "{uri:?}: {message}");
+    }
+    // Encoded twice, it is an odd name in the same folder.
+    gltf.json["buffers"][0]["uri"] = "%252e%252e%252fdata.bin".into();
+    std::fs::write(&path, serde_json::to_vec(&gltf.json).unwrap()).unwrap();
+    let message = load(&path, &LoadOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("No such file"), "{message}");
+}
+
+#[test]
+fn required_extensions_are_named() {
+    for name in ["KHR_draco_mesh_compression", "KHR_mesh_quantization"] {
+        let mut gltf = Gltf::triangle();
+        gltf.json["extensionsRequired"] = json!([name]);
+        assert!(gltf.error().contains(name));
+        gltf.json["extensionsRequired"] = json!(["KHR_texture_transform", "KHR_lights_punctual"]);
+        gltf.json["extensionsUsed"] = json!([name]);
+        assert!(noted(&gltf.load().unwrap(), name));
+    }
+}
+
+#[test]
+fn ranges_are_checked() {
+    let good = Gltf::triangle();
+    let error = |change: &dyn Fn(&mut serde_json::Value)| {
+        let mut gltf = good.clone();
+        change(&mut gltf.json);
+        gltf.error()
+    };
+    let message = error(&|json| json["accessors"][0]["count"] = 103.into());
+    assert!(
+        message.contains("accessor 0: reads 1200 bytes beyond the end of buffer view 0"),
+        "{message}"
+    );
+    let message = error(&|json| json["bufferViews"][0]["byteLength"] = 1000.into());
+    assert!(
+        message.contains("buffer view 0: 1000 bytes from byte 0 do not fit"),
+        "{message}"
+    );
+    let message = error(&|json| json["buffers"][0]["byteLength"] = 1000.into());
+    assert!(
+        message.contains("buffer 0: holds 36 bytes instead of 1000"),
+        "{message}"
+    );
+    let message = error(&|json| json["bufferViews"][0]["byteStride"] = u64::MAX.into());
+    assert!(message.contains("beyond the end"), "{message}");
+    let message = error(&|json| json["bufferViews"][0]["byteStride"] = 4.into());
+    assert!(message.contains("wider than the stride"), "{message}");
+    for key in ["byteOffset", "count"] {
+        let message = error(&|json| json["accessors"][0][key] = u64::MAX.into());
+        assert!(message.contains("beyond the end"), "{message}");
+    }
+    for (list, key) in [("bufferViews", "byteOffset"), ("bufferViews", "byteLength")] {
+        let message = error(&|json| json[list][0][key] = u64::MAX.into());
+        assert!(message.contains("do not fit"), "{message}");
+    }
+    for (list, key, kind) in [
+        ("accessors", "bufferView", "buffer view 77"),
+        ("bufferViews", "buffer", "buffer 77"),
+        ("nodes", "mesh", "mesh 77"),
+        ("nodes", "camera", "camera 77"),
+    ] {
+        let message = error(&|json| json[list][0][key] = 77.into());
+        assert!(
+            message.contains(&format!("{kind}, which does not exist")),
+            "{message}"
+        );
+    }
+    let message = error(&|json| json["meshes"][0]["primitives"][0]["material"] = 77.into());
+    assert!(
+        message.contains("material 77, which does not exist"),
+        "{message}"
+    );
+    let message = error(&|json| json["accessors"][0]["componentType"] = U16.into());
+    assert!(message.contains("must be Vec3 of F32"), "{message}");
+}
+
+#[test]
+fn indices_out_of_range() {
+    let mut gltf = Gltf::new();
+    let position = gltf.positions(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    let indices = gltf.accessor(&[0, 1, 255], U8, "SCALAR", 3);
+    gltf.mesh(json!({"attributes": {"POSITION": position}, "indices": indices}));
+    assert!(
+        gltf.error()
+            .contains("mesh 0: the index 255 is out of range, it has 3 vertices")
+    );
+}
+
+#[test]
+fn nodes_must_form_a_tree() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"] = json!([{"children": [1]}, {"children": [0]}]);
+    assert!(gltf.error().contains("reached twice"));
+    gltf.json["nodes"] = json!([{"children": [1, 2]}, {"children": [2]}, {}]);
+    assert!(gltf.error().contains("node 2: is reached twice"));
+    gltf.json["nodes"] = json!([{"children": [9]}]);
+    assert!(gltf.error().contains("node 9, which does not exist"));
+}
+
+#[test]
+fn deep_trees() {
+    let count = 100_000;
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"] = (1..count)
+        .map(|child| json!({"children": [child]}))
+        .collect();
+    gltf.push("nodes", json!({"mesh": 0}));
+    assert_eq!(gltf.load().unwrap().triangles.len(), 1);
+    let nested = "[".repeat(100_000);
+    assert!(error_of(nested.as_bytes()).contains("is not a glTF file"));
+}
+
+#[test]
+fn positions_must_be_finite() {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38] {
+        let mut gltf = Gltf::new();
+        let position = gltf.positions(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, bad, 0.0]]);
+        gltf.mesh(json!({"attributes": {"POSITION": position}}));
+        gltf.json["meshes"][0]["name"] = "leaf".into();
+        let message = gltf.error();
+        assert!(message.contains("mesh 0 (\"leaf\"): vertex 2"), "{message}");
+    }
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"][0]["scale"] = json!([1e300, 1e300, 1e300]);
+    assert!(gltf.error().contains("vertex 1"));
+}
+
+#[test]
+fn huge_counts_are_refused_quickly() {
+    let start = Instant::now();
+    // Zeros without a byte behind them, as many as can be counted.
+    for count in [1u64 << 40, u64::MAX] {
+        let mut gltf = Gltf::triangle();
+        gltf.json["accessors"][0] = json!({"componentType": F32, "type": "VEC3", "count": count});
+        assert!(gltf.error().contains("limit on triangles"));
+    }
+    // As many as the limit allows cost time, but no memory.
+    let mut gltf = Gltf::triangle();
+    gltf.json["accessors"][0] = json!({"componentType": F32, "type": "VEC3", "count": 1 << 24});
+    assert!(gltf.load().unwrap().positions.is_empty());
+    // Instances multiply: 1000 nodes, each with 100,000 empty primitives.
+    let mut gltf = Gltf::new();
+    let position = gltf.positions(&[[0.0; 3]]);
+    let primitives = vec![json!({"attributes": {"POSITION": position}}); 100_000];
+    gltf.push("meshes", json!({"primitives": primitives}));
+    for _ in 0..1000 {
+        gltf.node(json!({"mesh": 0}));
+    }
+    assert!(gltf.error().contains("limit on primitives"));
+    assert!(
+        start.elapsed() < Duration::from_secs(20),
+        "{:?}",
+        start.elapsed()
+    );
+    // A limit of one's own.
+    let limits = Limits {
+        max_triangles: 1,
+        ..Limits::default()
+    };
+    let options = LoadOptions {
+        limits,
+        ..LoadOptions::default()
+    };
+    let mut gltf = Gltf::triangle();
+    assert!(gltf.load_with(&options).is_ok());
+    gltf.node(json!({"mesh": 0}));
+    assert!(gltf.load_with(&options).is_err());
+}
+
+#[test]
+fn textures_have_limits() {
+    let mut gltf = textured_triangle(&png(2, 2, &[[255; 4]; 4]));
+    let options = |max_texture_side, max_texels| LoadOptions {
+        limits: Limits {
+            max_texture_side,
+            max_texels,
+            ..Limits::default()
+        },
+        ..LoadOptions::default()
+    };
+    assert!(gltf.load_with(&options(2, 4)).is_ok());
+    for options in [options(1, 4), options(2, 3)] {
+        let message = gltf.load_with(&options).unwrap_err().to_string();
+        assert!(
+            message.contains("image 0: its 2×2 texels exceed the limit"),
+            "{message}"
+        );
+    }
+    // A small file that claims to be huge.
+    let mut bomb = png(2, 2, &[[255; 4]; 4]);
+    bomb[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    assert!(textured_triangle(&bomb).error().contains("image 0"));
+    assert!(
+        textured_triangle(b"GIF89a-----")
+            .error()
+            .contains("neither PNG nor JPEG")
+    );
+    gltf.json["images"][0] = json!({});
+    assert!(gltf.error().contains("neither a uri nor a buffer view"));
+    gltf.json["images"][0] = json!({"uri": "data:image/png;base64,!!!"});
+    assert!(gltf.error().contains("not valid base64"));
+}
