@@ -1,0 +1,216 @@
+//! The frame: front, technique, back.
+
+mod resources;
+mod specialization;
+mod view;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::gpu::{
+    Attachments, Buffer, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, ImageKind, Recorder, Resources,
+    Timings,
+};
+use crate::plan::{Outputs, Plan, Variant, plan};
+use crate::shared::{Costs, Counters, Exposure, Fit, Push};
+use crate::shot::Shot;
+use view::{ViewPasses, tiles};
+
+/// Cost model [Yang09 eq. 6], Q_n = 1, as calibrated on lavapipe.
+pub const DEFAULT_COSTS: Costs = Costs { edge: 4.0, visibility: 2.0 };
+
+/// Constant light from everywhere, so that umbrae are dark rather than black.
+pub const DEFAULT_EXPOSURE: Exposure = Exposure { scale: 1.0, ambient: 0.04, light_count: 0 };
+
+/// What a renderer is made for, beside the shot.
+#[derive(Debug, Clone, Copy)]
+pub struct RenderOptions {
+    pub outputs: Outputs,
+    pub costs: Costs,
+    pub exposure: Exposure,
+}
+
+/// Renders one shot any number of times. All allocation happens when it is created.
+pub struct Renderer {
+    gpu: Arc<Gpu>,
+    shot: Shot,
+    options: RenderOptions,
+    plan: Plan,
+    resources: Resources,
+    gbuffer: GraphicsPass,
+    views: BTreeMap<(Variant, usize), ViewPasses>,
+    resolve: ComputePass,
+    shade: Option<ComputePass>,
+    recorder: Recorder,
+    /// The last frame's map and MSSM are still there.
+    retained: bool,
+}
+
+/// A finished frame.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    pub timings: Timings,
+    /// What ran.
+    pub plan: Plan,
+}
+
+impl Renderer {
+    /// # Errors
+    /// The shot makes no sense or exceeds the device's limits (see `plan`), memory or a pipeline cannot
+    /// be had.
+    pub fn new(gpu: &Arc<Gpu>, shot: &Shot, options: RenderOptions) -> Result<Self> {
+        let plan = plan(shot, options.outputs, &gpu.limits, false)?;
+        let exposure = Exposure { light_count: plan.lights.len() as u32, ..options.exposure };
+        let resources = resources::create(gpu, &plan, shot, options.costs, exposure)?;
+        let mut views = BTreeMap::new();
+        for (index, light) in plan.lights.iter().enumerate() {
+            for planned in &light.views {
+                let key = (planned.variant, index);
+                if !views.contains_key(&key) {
+                    let passes =
+                        ViewPasses::new(gpu, &plan, &shot.settings, &light.recipe, planned.variant, &resources)?;
+                    views.insert(key, passes);
+                }
+            }
+        }
+        let constants = specialization::of_frame(&plan);
+        let compute = |name: &str, shader: &str| ComputePass::new(gpu, name, shader, &constants, &resources);
+        let state = GraphicsState {
+            vertex: "gbuffer.vert",
+            fragment: Some("gbuffer.frag"),
+            colors: &[ImageKind::Vector, ImageKind::Vector, ImageKind::Color],
+        };
+        let recorded: u32 = plan.passes.iter().map(|(_, count)| count).sum();
+        let mut renderer = Self {
+            gbuffer: GraphicsPass::new(gpu, "gbuffer", &state, &constants, &resources)?,
+            resolve: compute("resolve", "resolve.comp")?,
+            shade: options.outputs.picture.then(|| compute("shade", "shade.comp")).transpose()?,
+            recorder: Recorder::new(gpu, recorded)?,
+            gpu: gpu.clone(),
+            shot: shot.clone(),
+            options,
+            plan,
+            resources,
+            views,
+            retained: false,
+        };
+        renderer.recorder.begin()?;
+        renderer.recorder.initialize(&renderer.resources);
+        renderer.recorder.submit_and_wait()?;
+        Ok(renderer)
+    }
+
+    /// The plan of the next frame.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Makes the next frame draw every map anew, as if something had changed.
+    pub fn invalidate(&mut self) -> Result<()> {
+        self.retained = false;
+        self.plan = plan(&self.shot, self.options.outputs, &self.gpu.limits, false)?;
+        Ok(())
+    }
+
+    /// Renders a frame and waits for it.
+    pub fn render(&mut self) -> Result<Frame> {
+        self.recorder.begin()?;
+        self.record()?;
+        let timings = self.recorder.submit_and_wait()?;
+        let plan = self.plan.clone();
+        self.retained = true;
+        self.plan = crate::plan::plan(&self.shot, self.options.outputs, &self.gpu.limits, true)?;
+        Ok(Frame { timings, plan })
+    }
+
+    fn record(&mut self) -> Result<()> {
+        let (plan, resources, recorder) = (&self.plan, &self.resources, &mut self.recorder);
+        let frame = Push::default();
+        let colors = ["position_world", "normal_world", "albedo"].map(|name| resources.image(name));
+        let [position, normal, albedo] = colors;
+        let attachments =
+            Attachments { colors: &[position?, normal?, albedo?], depth: resources.image("camera_depth")?, margin: 0 };
+        let vertices = 3 * (plan.frame.opaque_count + plan.frame.masked_count);
+        recorder.draw("gbuffer", frame, &attachments, &[(&self.gbuffer, Draw::Vertices(vertices))]);
+
+        let retained = plan.is_retained();
+        if plan.views().next().is_some() {
+            if !retained {
+                recorder.clear("clear_fits", resources.buffer("fits")?);
+            }
+            recorder.clear("clear_lists", resources.buffer("lists")?);
+        }
+        for (index, light) in plan.lights.iter().enumerate() {
+            if light.accumulates() {
+                recorder.clear("clear_occlusion", resources.buffer("occlusion")?);
+            }
+            for (view, planned) in (light.light.view_first..).zip(&light.views) {
+                let passes = &self.views[&(planned.variant, index)];
+                if !retained {
+                    passes.record_map(recorder, plan, resources, view)?;
+                }
+                passes.record_stages(recorder, plan, resources, view)?;
+            }
+            let push = Push { index: index as u32, level: 0 };
+            recorder.dispatch("resolve", &self.resolve, push, Groups::Direct(tiles(plan)));
+        }
+        if let Some(shade) = &self.shade {
+            recorder.dispatch("shade", shade, frame, Groups::Direct(tiles(plan)));
+        }
+        Ok(())
+    }
+
+    /// The names of the last frame's passes, as recorded.
+    pub fn recorded(&self) -> &[String] {
+        self.recorder.names()
+    }
+
+    /// What a buffer holds after a frame.
+    pub fn read_buffer<T: bytemuck::Pod>(&self, name: &str, count: usize) -> Result<Vec<T>> {
+        let bytes = (count * size_of::<T>()) as u64;
+        let target = Buffer::readback(&self.gpu, &format!("{name} (readback)"), bytes)?;
+        let mut recorder = Recorder::new(&self.gpu, 0)?;
+        recorder.begin()?;
+        recorder.copy_buffer("readback", self.resources.buffer(name)?, &target);
+        recorder.submit_and_wait()?;
+        target.read(count)
+    }
+
+    /// What an image holds after a frame: all layers, row by row, `count` values.
+    pub fn read_image<T: bytemuck::Pod>(&self, name: &str, count: usize) -> Result<Vec<T>> {
+        let image = self.resources.image(name)?;
+        let target = Buffer::readback(&self.gpu, &format!("{name} (readback)"), image.bytes())?;
+        let mut recorder = Recorder::new(&self.gpu, 0)?;
+        recorder.begin()?;
+        recorder.copy_image("readback", image, &target);
+        recorder.submit_and_wait()?;
+        target.read(count)
+    }
+
+    fn pixel_count(&self) -> usize {
+        self.plan.size.0 as usize * self.plan.size.1 as usize
+    }
+
+    /// A light's visibility, row by row from the top: 0 umbra … 1 lit, NaN where there is no surface.
+    pub fn visibility(&self, light: usize) -> Result<Vec<f32>> {
+        let pixels = self.pixel_count();
+        let all = self.read_buffer("visibility", pixels * self.plan.lights.len())?;
+        Ok(all[light * pixels..(light + 1) * pixels].to_vec())
+    }
+
+    /// The picture, RGBA8, row by row from the top.
+    pub fn picture(&self) -> Result<Vec<u8>> {
+        self.read_buffer("picture", 4 * self.pixel_count())
+    }
+
+    /// Zero unless the settings ask for counters; summed over all frames since the last reset.
+    pub fn counters(&self) -> Result<Counters> {
+        Ok(self.read_buffer("counters", 1)?[0])
+    }
+
+    /// What the device found out about each view.
+    pub fn fits(&self) -> Result<Vec<Fit>> {
+        self.read_buffer("fits", self.plan.views().count())
+    }
+}

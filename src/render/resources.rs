@@ -1,0 +1,119 @@
+//! Creates what the plan lists, and fills what the host knows.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::gpu::{Buffer, Gpu, Image, ImageKind, Resources};
+use crate::plan::Plan;
+use crate::scene::{Material, Scene};
+use crate::shared::{self, Surface, View};
+use crate::shot::Shot;
+
+/// Resources under the names that shaders know them by. Everything that a shader could name exists; what
+/// the plan leaves out is an empty placeholder.
+pub fn create(gpu: &Arc<Gpu>, plan: &Plan, shot: &Shot, costs: shared::Costs, exposure: shared::Exposure) -> Result<Resources> {
+    let mut resources = Resources::default();
+    create_scene(gpu, plan, &shot.scene, &mut resources)?;
+    create_views(gpu, plan, &mut resources)?;
+    create_images(gpu, plan, &mut resources)?;
+    for (name, data) in [("costs", bytemuck::bytes_of(&costs)), ("exposure", bytemuck::bytes_of(&exposure))] {
+        resources.add_buffer(name, Buffer::with_data(gpu, name, data)?);
+    }
+    let counters = [shared::Counters::default()];
+    resources.add_buffer("counters", Buffer::with_data(gpu, "counters", &counters)?);
+    let names = ["caster_indices", "kernels", "packets", "pixels", "occlusion", "fits", "lists", "visibility", "picture"];
+    for name in names {
+        resources.add_buffer(name, Buffer::new(gpu, name, planned(plan, name))?);
+    }
+    Ok(resources)
+}
+
+fn planned(plan: &Plan, name: &str) -> u64 {
+    plan.resources.iter().find(|(known, _)| *known == name).map_or(0, |&(_, bytes)| bytes)
+}
+
+fn create_scene(gpu: &Arc<Gpu>, plan: &Plan, scene: &Scene, resources: &mut Resources) -> Result<()> {
+    let mut add = |name: &'static str, data: &[u8]| -> Result<()> {
+        let data = if planned(plan, name) > 0 { data } else { &[] };
+        resources.add_buffer(name, Buffer::with_data(gpu, name, data)?);
+        Ok(())
+    };
+    let positions: Vec<[f32; 3]> = scene.positions.iter().map(|p| p.to_array()).collect();
+    let texcoords: Vec<[f32; 2]> = scene.texcoords.iter().map(|t| t.to_array()).collect();
+    let (surfaces, texels) = surfaces(scene);
+    let mut vertex_surfaces = vec![0u32; scene.positions.len()];
+    for (triangle, &surface) in scene.triangles.iter().zip(&scene.triangle_materials) {
+        for &vertex in triangle {
+            vertex_surfaces[vertex as usize] = surface;
+        }
+    }
+    add("positions", bytemuck::cast_slice(&positions))?;
+    add("triangles", bytemuck::cast_slice(&scene.triangles))?;
+    add("triangle_surfaces", bytemuck::cast_slice(&scene.triangle_materials))?;
+    add("surfaces", bytemuck::cast_slice(&surfaces))?;
+    add("texcoords", bytemuck::cast_slice(&texcoords))?;
+    add("vertex_surfaces", bytemuck::cast_slice(&vertex_surfaces))?;
+    add("texels", &texels)
+}
+
+/// Materials, and the texels of all textures one after the other.
+fn surfaces(scene: &Scene) -> (Vec<Surface>, Vec<u8>) {
+    let mut texels = Vec::new();
+    let mut firsts = Vec::new();
+    for texture in &scene.textures {
+        firsts.push((texels.len() / 4) as u32);
+        texels.extend_from_slice(&texture.rgba);
+    }
+    let surface = |material: &Material| {
+        let mut surface = Surface {
+            base_color: material.base_color.into(),
+            alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
+            double_sided: u32::from(material.double_sided),
+            ..Default::default()
+        };
+        if let Some(index) = material.texture {
+            let texture = &scene.textures[index];
+            surface.texture_first = firsts[index];
+            surface.texture_size = [texture.width, texture.height];
+            surface.wrap = texture.wrap.map(|wrap| wrap as u32);
+            surface.linear = u32::from(texture.linear);
+        }
+        surface
+    };
+    (scene.materials.iter().map(surface).collect(), texels)
+}
+
+fn create_views(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Result<()> {
+    let mut sectors: Vec<f32> = Vec::new();
+    let mut views: Vec<View> = Vec::new();
+    for planned in plan.views() {
+        let mut view = planned.view;
+        if let Some(table) = &planned.sectors {
+            view.sector_first = sectors.len() as u32;
+            sectors.extend(table);
+        }
+        views.push(view);
+    }
+    let lights: Vec<shared::Light> = plan.lights.iter().map(|light| light.light).collect();
+    resources.add_buffer("frame", Buffer::with_data(gpu, "frame", &[plan.frame])?);
+    resources.add_buffer("views", Buffer::with_data(gpu, "views", &views)?);
+    resources.add_buffer("sectors", Buffer::with_data(gpu, "sectors", &sectors)?);
+    resources.add_buffer("lights", Buffer::with_data(gpu, "lights", &lights)?);
+    Ok(())
+}
+
+fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Result<()> {
+    let map = (plan.map.max(1), plan.map.max(1));
+    let images = [
+        ("camera_depth", ImageKind::Depth, plan.size, 1),
+        ("position_world", ImageKind::Vector, plan.size, 1),
+        ("normal_world", ImageKind::Vector, plan.size, 1),
+        ("albedo", ImageKind::Color, plan.size, 1),
+        ("shadow_map", ImageKind::Depth, map, 1),
+        ("mssm", ImageKind::Bounds, if plan.levels > 0 { map } else { (1, 1) }, plan.levels.max(1)),
+    ];
+    for (name, kind, size, layers) in images {
+        resources.add_image(name, Image::new(gpu, name, kind, size, layers)?);
+    }
+    Ok(())
+}
