@@ -1,6 +1,8 @@
 //! Soft shadows of area lights.
 #[cfg(feature = "cli")]
 pub mod compare;
+#[cfg(feature = "cli")]
+pub mod cpu;
 pub mod error;
 #[cfg(feature = "cli")]
 pub mod image;
