@@ -8,7 +8,10 @@ use std::path::PathBuf;
 pub enum Error {
     /// A file could not be read or written.
     #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: std::io::Error },
+    Io {
+        path: PathBuf,
+        source: std::io::Error,
+    },
     /// A file was read but its contents are not what they should be.
     #[error("{}: {message}", path.display())]
     Parse { path: PathBuf, message: String },
@@ -20,7 +23,10 @@ pub enum Error {
     Unsupported(String),
     /// A Vulkan call failed; `call` names the call and the object.
     #[error("{call} failed: {result}")]
-    Vulkan { call: String, result: ash::vk::Result },
+    Vulkan {
+        call: String,
+        result: ash::vk::Result,
+    },
     /// The allocator failed for the named resource.
     #[error("no device memory for {resource}: {message}")]
     Memory { resource: String, message: String },
@@ -33,10 +39,16 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
     pub fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
-        Self::Io { path: path.into(), source }
+        Self::Io {
+            path: path.into(),
+            source,
+        }
     }
 
     pub fn parse(path: impl Into<PathBuf>, message: impl Into<String>) -> Self {
-        Self::Parse { path: path.into(), message: message.into() }
+        Self::Parse {
+            path: path.into(),
+            message: message.into(),
+        }
     }
 }

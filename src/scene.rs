@@ -1,8 +1,19 @@
 //! Triangles, materials, textures, lights and cameras: what a scene file holds, flattened.
 
+mod accessor;
+mod document;
+mod emitters;
+pub(crate) mod file;
+mod geometry;
 pub mod gltf;
+mod light;
+mod material;
+mod notes;
+mod tree;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
+
+pub(crate) use geometry::MAX_COORDINATE;
 
 /// A scene, flattened into one list of triangles in one space.
 ///
@@ -116,7 +127,8 @@ impl Scene {
         let Some((&first, rest)) = self.positions.split_first() else {
             return (Vec3::ZERO, Vec3::ZERO);
         };
-        rest.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)))
+        rest.iter()
+            .fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)))
     }
 
     /// The corners of triangle `index`, relative to `origin`.

@@ -2,7 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::scene::{AreaLight, Camera, Scene};
+use crate::scene::{AreaLight, Camera, MAX_COORDINATE, Scene};
+use crate::{Error, Result};
+
+mod load;
+mod names;
+
+pub use load::Overrides;
 
 /// What a leaf does whose status differs between the packet's pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -69,6 +75,107 @@ pub struct Shot {
     pub height: u32,
     pub lights: Vec<AreaLight>,
     pub settings: Settings,
-    /// What the shot file asked for and is ignored, a sentence each.
+    /// What the shot file asked for and is ignored, a sentence each (`Scene::notes` are the scene's).
     pub notes: Vec<String>,
+}
+
+/// [pixel] The largest width and height of an image.
+pub const MAX_SIZE: u32 = 32768;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            technique: Technique::PacketContour,
+            packet: (4, 4),
+            leaf: Leaf::PerPixel,
+            mapping: Mapping::Serial,
+            split: 4,
+            map: 512,
+            footprint_pruning: true,
+            hierarchical: false,
+            bias: 1.5,
+            counters: false,
+        }
+    }
+}
+
+impl Settings {
+    /// # Errors
+    /// [`Error::Invalid`] when a setting is out of its range.
+    pub fn validate(&self) -> Result<()> {
+        let (width, height) = self.packet;
+        let check = |ok: bool, message: String| ok.then_some(()).ok_or(Error::Invalid(message));
+        check(
+            (1..=8).contains(&width) && (1..=8).contains(&height),
+            format!("a packet is 1x1 to 8x8 pixels, not {width}x{height}"),
+        )?;
+        check(
+            (1..=16).contains(&self.split),
+            format!("the light's split is 1 to 16, not {}", self.split),
+        )?;
+        check(
+            (16..=8192).contains(&self.map),
+            format!("a shadow map is 16 to 8192 texels wide, not {}", self.map),
+        )?;
+        check(
+            self.bias.is_finite() && self.bias >= 0.0,
+            format!(
+                "the bias is a finite number of texels from 0, not {}",
+                self.bias
+            ),
+        )
+    }
+}
+
+impl Shot {
+    /// # Errors
+    /// [`Error::Invalid`] when the shot cannot be rendered: no triangles, no light, or a camera, size,
+    /// light or setting that makes no sense.
+    pub fn validate(&self) -> Result<()> {
+        if self.scene.triangles.is_empty() {
+            return Err(Error::Invalid("the scene holds no triangles".into()));
+        }
+        let size = 1..=MAX_SIZE;
+        if !size.contains(&self.width) || !size.contains(&self.height) {
+            return Err(Error::Invalid(format!(
+                "an image is 1 to {MAX_SIZE} pixels wide and high, not {}x{}",
+                self.width, self.height
+            )));
+        }
+        self.camera.validate()?;
+        if self.lights.is_empty() {
+            return Err(Error::Invalid("there is no light".into()));
+        }
+        self.lights.iter().try_for_each(AreaLight::validate)?;
+        self.settings.validate()
+    }
+}
+
+/// The smallest |sin| between a camera's `up` and its view direction.
+const UP_TOLERANCE: f64 = 1e-6;
+
+impl Camera {
+    /// # Errors
+    /// [`Error::Invalid`] when a number is not finite or beyond 10¹⁸, eye and target coincide, `up` has
+    /// no length or lies along the view direction, or the field of view is not in (0, 180).
+    pub fn validate(&self) -> Result<()> {
+        let vectors = [self.eye, self.target, self.up];
+        let sane = |v: &glam::DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
+        let view = (self.target - self.eye).try_normalize();
+        let fault = match (view, self.up.try_normalize()) {
+            _ if !vectors.iter().all(sane) => "its eye, target or up is not finite or beyond 1e18",
+            _ if !(self.vfov_deg > 0.0 && self.vfov_deg < 180.0) => {
+                "its vertical field of view must be more than 0 and less than 180 degrees"
+            }
+            (None, _) => "its eye and target are the same point",
+            (_, None) => "its up has no length",
+            (Some(view), Some(up)) if view.cross(up).length() < UP_TOLERANCE => {
+                "its up is parallel to the view direction"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::Invalid(format!(
+            "the camera cannot be used: {fault}"
+        )))
+    }
 }

@@ -1,1 +1,150 @@
-//! glTF 2.0 → Scene.
+//! glTF 2.0 (.gltf and .glb) → [`Scene`].
+//!
+//! Files may be malformed or hostile: every reference and range is checked before use, links out of
+//! the file's folder are refused, and [`Limits`] bound memory and time.
+//!
+//! Triangles without area are left out, for they neither show nor cast a shadow.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::document::{Document, label};
+use super::emitters::Emitters;
+use super::geometry::{Geometry, double_area};
+use super::material::{Fate, Materials};
+use super::notes::Notes;
+use super::tree::walk;
+use super::{Scene, file};
+use crate::Result;
+
+/// How to read a glTF file.
+#[derive(Debug, Clone, Default)]
+pub struct LoadOptions {
+    /// Which scene of the file, counted from 0. None: its default scene, else its first.
+    pub scene: Option<usize>,
+    /// [scene units] ≥ 0. Point and spot lights become discs of this radius. None: they are left out.
+    pub punctual_radius: Option<f64>,
+    pub limits: Limits,
+}
+
+/// What a file may ask for at most, however small it is itself.
+#[derive(Debug, Clone)]
+pub struct Limits {
+    /// Triangles, every instance of a mesh counted. Default: 2²⁶ (about 4 GiB).
+    pub max_triangles: usize,
+    /// [texel] Width and height of a texture. Default: 16384.
+    pub max_texture_side: u32,
+    /// [texel] All textures together, 4 bytes each. Default: 2²⁸ (1 GiB).
+    pub max_texels: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            max_triangles: 1 << 26,
+            max_texture_side: 16384,
+            max_texels: 1 << 28,
+        }
+    }
+}
+
+/// Reads one scene of a .gltf or .glb and the files beside it that it refers to.
+///
+/// # Errors
+/// When a file cannot be read, is malformed, requires an unknown extension or exceeds a limit; the
+/// message names the file and the object in it.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
+    parse(path, &file::read(path)?, options)
+}
+
+/// As [`load`], from bytes that were read from `path` before.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> {
+    let document = Document::parse(path, bytes)?;
+    let mut notes = Notes::default();
+    let mut geometry = Geometry::new(options.limits.max_triangles);
+    let placed = walk(&document, options.scene)?;
+    for place in &placed {
+        let node = document.get(place.node, "node", "the node tree")?;
+        if node.skin.is_some() {
+            let name = label("node", place.node.value(), node.name.as_deref());
+            notes.add("skins are ignored; the mesh keeps its bind pose", &name);
+        }
+        if let Some(mesh) = node.mesh {
+            geometry.add(&document, mesh, &place.world, &mut notes)?;
+        }
+    }
+    let mut scene = assemble(&document, geometry, &options.limits, &mut notes)?;
+    let emitters = Emitters::new(&document, options.punctual_radius, &scene)?;
+    for place in &placed {
+        scene.lights.extend(emitters.light(place, &mut notes)?);
+        scene.cameras.extend(emitters.camera(place, &mut notes)?);
+    }
+    let ignored = document.ignored_extensions();
+    if !ignored.is_empty() {
+        notes.add(
+            "not supported and ignored",
+            &format!("extensions {}", ignored.join(", ")),
+        );
+    }
+    scene.notes = notes.into_sentences();
+    Ok(scene)
+}
+
+/// Moves the triangles to f32 around the scene's centre and gives them their materials.
+fn assemble<'a>(
+    document: &'a Document<'a>,
+    geometry: Geometry,
+    limits: &Limits,
+    notes: &mut Notes,
+) -> Result<Scene> {
+    let origin = center(&geometry.positions);
+    let positions: Vec<_> = geometry
+        .positions
+        .iter()
+        .map(|p| (p - origin).as_vec3())
+        .collect();
+    let mut materials = Materials::new(document, limits);
+    let (mut opaque, mut masked) = (Vec::new(), Vec::new());
+    for (&triangle, &material) in geometry.triangles.iter().zip(&geometry.materials) {
+        // What had an area in f64 may have none left in f32.
+        if double_area(triangle.map(|i| positions[i as usize].as_dvec3())) == 0.0 {
+            continue;
+        }
+        match materials.fate(material, notes)? {
+            Fate::Opaque(index) => opaque.push((triangle, index)),
+            Fate::Masked(index) => masked.push((triangle, index)),
+            Fate::LeftOut => {}
+        }
+    }
+    let opaque_count = opaque.len();
+    let (triangles, triangle_materials) = opaque.into_iter().chain(masked).unzip();
+    Ok(Scene {
+        origin,
+        positions,
+        texcoords: match materials.textures.is_empty() {
+            true => Vec::new(),
+            false => geometry.texcoords,
+        },
+        triangles,
+        triangle_materials,
+        opaque_count,
+        materials: materials.list,
+        textures: materials.textures,
+        ..Scene::default()
+    })
+}
+
+/// [scene units] The centre of the bounding box; zero without positions.
+fn center(positions: &[DVec3]) -> DVec3 {
+    let Some(&first) = positions.first() else {
+        return DVec3::ZERO;
+    };
+    let (low, high) = positions
+        .iter()
+        .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
+    (low + high) * 0.5
+}

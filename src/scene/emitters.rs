@@ -1,0 +1,294 @@
+//! Lights and cameras of a glTF file.
+//!
+//! Area lights are those of the draft extension `EXT_lights_area`: a `rect` is `size` high (local y)
+//! and `size` × `rect.aspect` wide (local x), a `disk` has the diameter `size`; both shine along the
+//! node's −Z and grow with the largest component of its world scale.
+
+use glam::{DAffine3, DVec3, Vec3};
+use gltf::json::Node;
+use gltf::json::camera::Perspective;
+use gltf::json::extensions::scene::khr_lights_punctual::Type;
+use gltf::json::validation::Checked;
+use serde::Deserialize;
+
+use super::document::{Document, label};
+use super::notes::Notes;
+use super::tree::Placed;
+use super::{AreaLight, Camera, LightShape, Scene};
+use crate::Result;
+
+const AREA: &str = "EXT_lights_area";
+
+#[derive(Deserialize, Default)]
+struct AreaLights {
+    lights: Vec<AreaLightJson>,
+}
+
+#[derive(Deserialize)]
+struct AreaLightJson {
+    name: Option<String>,
+    #[serde(rename = "type", default = "rect")]
+    kind: String,
+    #[serde(default = "one")]
+    size: f64,
+    #[serde(default)]
+    rect: RectJson,
+    #[serde(default = "white")]
+    color: [f32; 3],
+    intensity: Option<f32>,
+}
+
+#[derive(Deserialize)]
+struct RectJson {
+    #[serde(default = "one")]
+    aspect: f64,
+}
+
+impl Default for RectJson {
+    fn default() -> Self {
+        Self { aspect: one() }
+    }
+}
+
+#[derive(Deserialize)]
+struct AreaLightUse {
+    light: usize,
+}
+
+fn rect() -> String {
+    "rect".into()
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn white() -> [f32; 3] {
+    [1.0; 3]
+}
+
+/// Turns nodes into lights and cameras.
+pub(super) struct Emitters<'a> {
+    document: &'a Document<'a>,
+    area_lights: Vec<AreaLightJson>,
+    punctual_radius: Option<f64>,
+    /// [scene units, world]
+    scene_center: DVec3,
+    /// [scene units] The length of the bounding box's diagonal.
+    scene_extent: f64,
+}
+
+impl<'a> Emitters<'a> {
+    /// `scene` holds all triangles.
+    ///
+    /// # Errors
+    /// When the file's area lights are malformed.
+    pub fn new(
+        document: &'a Document<'a>,
+        punctual_radius: Option<f64>,
+        scene: &Scene,
+    ) -> Result<Self> {
+        let extensions = document.root.extensions.as_ref();
+        let area_lights = match extensions.and_then(|extensions| extensions.others.get(AREA)) {
+            Some(json) => {
+                AreaLights::deserialize(json).map_err(|e| document.error(format!("{AREA}: {e}")))?
+            }
+            None => AreaLights::default(),
+        };
+        let (low, high) = scene.bounds();
+        Ok(Self {
+            document,
+            area_lights: area_lights.lights,
+            punctual_radius,
+            scene_center: scene.origin,
+            scene_extent: (high - low).as_dvec3().length(),
+        })
+    }
+
+    /// The light of a node, if it has one that can be rendered.
+    ///
+    /// # Errors
+    /// When it is malformed or does not exist.
+    pub fn light(&self, place: &Placed, notes: &mut Notes) -> Result<Option<AreaLight>> {
+        let node = self.document.get(place.node, "node", "the node tree")?;
+        let name = label("node", place.node.value(), node.name.as_deref());
+        let Some(extensions) = &node.extensions else {
+            return Ok(None);
+        };
+        if let Some(json) = extensions.others.get(AREA) {
+            let reference = AreaLightUse::deserialize(json)
+                .map_err(|e| self.document.error(format!("{name}: {AREA}: {e}")))?;
+            return self.area_light(reference.light, node, &name, &place.world, notes);
+        }
+        match &extensions.khr_lights_punctual {
+            Some(reference) => {
+                self.punctual_light(reference.light, node, &name, &place.world, notes)
+            }
+            None => Ok(None),
+        }
+    }
+
+    fn area_light(
+        &self,
+        index: usize,
+        node: &Node,
+        user: &str,
+        world: &DAffine3,
+        notes: &mut Notes,
+    ) -> Result<Option<AreaLight>> {
+        let document = self.document;
+        let json = self.area_lights.get(index).ok_or_else(|| {
+            document.error(format!(
+                "{user} refers to area light {index}, which does not exist"
+            ))
+        })?;
+        let name = label("area light", index, json.name.as_deref());
+        if json.size < 0.0 || json.rect.aspect < 0.0 {
+            return Err(document.error(format!("{name}: has a negative size")));
+        }
+        let matrix = world.matrix3;
+        let scale = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length);
+        let half = 0.5 * json.size * scale.into_iter().fold(0.0, f64::max);
+        let frame = Frame::of(world);
+        let shape = match json.kind.as_str() {
+            "rect" => LightShape::Rect {
+                u: frame.right * (half * json.rect.aspect),
+                v: frame.forward.cross(frame.right) * half,
+            },
+            "disk" | "disc" => LightShape::Disc {
+                normal: frame.forward,
+                radius: half,
+            },
+            _ => {
+                notes.add(
+                    "an area light that is neither rect nor disk is left out",
+                    &name,
+                );
+                return Ok(None);
+            }
+        };
+        Ok(Some(AreaLight {
+            name: json.name.clone().or(node.name.clone()).unwrap_or(name),
+            center: world.translation,
+            shape,
+            color: Vec3::from(json.color).max(Vec3::ZERO),
+            intensity: json.intensity,
+        }))
+    }
+
+    fn punctual_light(
+        &self,
+        index: gltf::json::Index<gltf::json::extensions::scene::khr_lights_punctual::Light>,
+        node: &Node,
+        user: &str,
+        world: &DAffine3,
+        notes: &mut Notes,
+    ) -> Result<Option<AreaLight>> {
+        let json = self.document.get(index, "light", user)?;
+        let name = label("light", index.value(), json.name.as_deref());
+        let forward = Frame::of(world).forward;
+        let normal = match json.type_ {
+            Checked::Valid(Type::Spot) => forward,
+            Checked::Valid(Type::Point) => (self.scene_center - world.translation)
+                .try_normalize()
+                .unwrap_or(forward),
+            Checked::Valid(Type::Directional) => {
+                notes.add(
+                    "suns (directional lights) are not supported and are left out",
+                    &name,
+                );
+                return Ok(None);
+            }
+            Checked::Invalid => {
+                notes.add("a light of an invalid type is left out", &name);
+                return Ok(None);
+            }
+        };
+        let Some(radius) = self.punctual_radius else {
+            notes.add(
+                "a point or spot light has no extent and is left out; pass --radius to make it a disc",
+                &name,
+            );
+            return Ok(None);
+        };
+        notes.add(
+            "the intensity of a point or spot light is ignored; it is set to suit the view",
+            &name,
+        );
+        Ok(Some(AreaLight {
+            name: json.name.clone().or(node.name.clone()).unwrap_or(name),
+            center: world.translation,
+            shape: LightShape::Disc { normal, radius },
+            color: Vec3::from(json.color).max(Vec3::ZERO),
+            intensity: None,
+        }))
+    }
+
+    /// The camera of a node, if it has one that can be rendered.
+    ///
+    /// # Errors
+    /// When it does not exist.
+    pub fn camera(&self, place: &Placed, notes: &mut Notes) -> Result<Option<Camera>> {
+        let node = self.document.get(place.node, "node", "the node tree")?;
+        let Some(index) = node.camera else {
+            return Ok(None);
+        };
+        let user = label("node", place.node.value(), node.name.as_deref());
+        let json = self.document.get(index, "camera", &user)?;
+        let name = label("camera", index.value(), json.name.as_deref());
+        let Some(Perspective {
+            yfov, aspect_ratio, ..
+        }) = json.perspective
+        else {
+            notes.add("a camera that is not a perspective one is left out", &name);
+            return Ok(None);
+        };
+        let frame = Frame::of(&place.world);
+        let eye = place.world.translation;
+        // The point of the view axis nearest to the scene's centre stands for what the camera looks at.
+        let ahead = (self.scene_center - eye).dot(frame.forward);
+        let distance = match (ahead > 0.0, self.scene_extent > 0.0) {
+            (true, _) => ahead,
+            (false, true) => self.scene_extent,
+            (false, false) => 1.0,
+        };
+        Ok(Some(Camera {
+            name: json.name.clone().or(node.name.clone()).unwrap_or(name),
+            eye,
+            target: eye + frame.forward * distance,
+            up: frame.up,
+            vfov_deg: f64::from(yfov).to_degrees(),
+            aspect: aspect_ratio.map(f64::from),
+        }))
+    }
+}
+
+/// The directions of a node in world space, orthonormal whatever its scale.
+struct Frame {
+    right: DVec3,
+    up: DVec3,
+    /// The node's −Z.
+    forward: DVec3,
+}
+
+impl Frame {
+    fn of(world: &DAffine3) -> Self {
+        let [x, y, z] = [
+            world.matrix3.x_axis,
+            world.matrix3.y_axis,
+            world.matrix3.z_axis,
+        ];
+        // A scale of 0 along z still leaves the plane of x and y.
+        let back = z.try_normalize().or_else(|| x.cross(y).try_normalize());
+        let back = back.unwrap_or(DVec3::Z);
+        let right = (x - back * x.dot(back)).try_normalize();
+        let right = right.unwrap_or_else(|| back.any_orthonormal_vector());
+        let up = back.cross(right);
+        let up = if up.dot(y) < 0.0 { -up } else { up };
+        Self {
+            right,
+            up,
+            forward: -back,
+        }
+    }
+}

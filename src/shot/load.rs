@@ -1,0 +1,301 @@
+//! Shot files (JSON), and glTF files that bring their own camera and lights.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+use super::{MAX_SIZE, Settings, Shot};
+use crate::scene::gltf::{self, LoadOptions};
+use crate::scene::{AreaLight, Camera, LightShape, Scene, file};
+use crate::{Error, Result};
+
+/// [pixel] Height (and without an aspect ratio, width) of an image for which nobody states a size.
+const DEFAULT_HEIGHT: u32 = 512;
+
+/// What a caller states over the heads of the files.
+#[derive(Debug, Clone, Default)]
+pub struct Overrides {
+    /// [pixel] Width and height.
+    pub size: Option<(u32, u32)>,
+    /// [scene units] ≥ 0. Point and spot lights of the scene become discs of this radius.
+    pub radius: Option<f64>,
+    /// Which scene of the glTF, counted from 0.
+    pub scene_index: Option<usize>,
+    /// Which camera of the scene, counted from 0. A camera in the shot file goes before it.
+    pub camera_index: Option<usize>,
+}
+
+#[derive(Deserialize)]
+struct ShotFile {
+    scene: String,
+    camera: Option<CameraFile>,
+    light: Option<LightFile>,
+    lights: Option<Vec<LightFile>>,
+}
+
+#[derive(Deserialize)]
+struct CameraFile {
+    eye: [f64; 3],
+    target: [f64; 3],
+    #[serde(default = "y_axis")]
+    up: [f64; 3],
+    vfov_deg: f64,
+    width: Option<u32>,
+    height: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LightKind {
+    Rect,
+    Disc,
+}
+
+#[derive(Deserialize)]
+struct LightFile {
+    #[serde(rename = "type")]
+    kind: LightKind,
+    center: [f64; 3],
+    u: Option<[f64; 3]>,
+    v: Option<[f64; 3]>,
+    normal: Option<[f64; 3]>,
+    radius: Option<f64>,
+    #[serde(default = "white")]
+    color: [f32; 3],
+    intensity: Option<f32>,
+    texture: Option<IgnoredAny>,
+}
+
+fn y_axis() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn white() -> [f32; 3] {
+    [1.0; 3]
+}
+
+impl Shot {
+    /// Reads a shot file, or a .gltf or .glb that brings its own camera and light; which of them it is,
+    /// its contents tell. The settings are the defaults. A shot file without camera or lights takes
+    /// those of its scene.
+    ///
+    /// # Errors
+    /// When a file cannot be read or what it describes cannot be rendered.
+    pub fn load(path: &Path, overrides: &Overrides) -> Result<Shot> {
+        let bytes = file::read(path)?;
+        let mut shot = match is_gltf(path, &bytes) {
+            true => Draft::new(gltf::parse(path, &bytes, &overrides.load_options())?),
+            false => read_shot_file(path, &bytes, overrides)?,
+        };
+        if let Some(size) = overrides.size {
+            shot.size = size.into();
+        }
+        let shot = shot.finish(path, overrides)?;
+        match shot.validate() {
+            Err(Error::Invalid(message)) => Err(Error::parse(path, message)),
+            other => other.map(|()| shot),
+        }
+    }
+}
+
+impl Overrides {
+    fn load_options(&self) -> LoadOptions {
+        LoadOptions {
+            scene: self.scene_index,
+            punctual_radius: self.radius,
+            ..LoadOptions::default()
+        }
+    }
+}
+
+fn is_gltf(path: &Path, bytes: &[u8]) -> bool {
+    #[derive(Deserialize)]
+    struct Probe {
+        asset: Option<IgnoredAny>,
+    }
+    let extension = path.extension().unwrap_or_default();
+    extension.eq_ignore_ascii_case("glb")
+        || extension.eq_ignore_ascii_case("gltf")
+        || bytes.starts_with(b"glTF")
+        || serde_json::from_slice(bytes).is_ok_and(|probe: Probe| probe.asset.is_some())
+}
+
+fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Draft> {
+    let broken = |e| Error::parse(path, format!("is not a shot file: {e}"));
+    let mut notes = Vec::new();
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let shot: ShotFile = serde_ignored::deserialize(&mut json, |key| {
+        // Where a value is optional, serde_ignored marks it with a question mark.
+        let key = key.to_string().replace(".?", "");
+        notes.push(format!("The key {key:?} is ignored."));
+    })
+    .map_err(broken)?;
+    json.end().map_err(broken)?;
+    let lights = match (shot.light, shot.lights) {
+        (Some(_), Some(_)) => {
+            return Err(Error::parse(
+                path,
+                "has both \"light\" and \"lights\"; give one of them",
+            ));
+        }
+        (Some(light), None) => vec![light],
+        (None, lights) => lights.unwrap_or_default(),
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let scene = gltf::load(&folder.join(shot.scene), &overrides.load_options())?;
+    let mut draft = Draft::new(scene);
+    draft.notes = notes;
+    if let Some(camera) = shot.camera {
+        draft.size = Size(camera.width, camera.height);
+        draft.camera = Some(camera.into());
+    }
+    for (index, light) in lights.into_iter().enumerate() {
+        if light.texture.is_some() {
+            draft.notes.push(format!(
+                "Light {index}: textures of lights are not supported yet; it shines uniformly."
+            ));
+        }
+        let light = light
+            .into_light(index)
+            .map_err(|message| Error::parse(path, message))?;
+        draft.lights.push(light);
+    }
+    Ok(draft)
+}
+
+/// [pixel] Width and height, as far as they are stated.
+struct Size(Option<u32>, Option<u32>);
+
+impl From<(u32, u32)> for Size {
+    fn from((width, height): (u32, u32)) -> Self {
+        Self(Some(width), Some(height))
+    }
+}
+
+/// A shot as far as its own file describes it.
+struct Draft {
+    scene: Scene,
+    camera: Option<Camera>,
+    size: Size,
+    lights: Vec<AreaLight>,
+    notes: Vec<String>,
+}
+
+impl Draft {
+    fn new(scene: Scene) -> Self {
+        Self {
+            scene,
+            camera: None,
+            size: Size(None, None),
+            lights: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Takes what is missing from the scene.
+    fn finish(self, path: &Path, overrides: &Overrides) -> Result<Shot> {
+        let Self {
+            scene,
+            camera,
+            size,
+            mut lights,
+            notes,
+        } = self;
+        let camera = match camera {
+            Some(camera) => camera,
+            None => scene_camera(&scene, overrides.camera_index)
+                .map_err(|message| Error::parse(path, message))?,
+        };
+        if lights.is_empty() {
+            lights = scene.lights.clone();
+        }
+        if lights.is_empty() {
+            return Err(Error::parse(
+                path,
+                "brings no area light; write a shot file with \"scene\", \"camera\" and \"lights\", or, if \
+                 the scene has point or spot lights, pass --radius to make them discs",
+            ));
+        }
+        let aspect = camera.aspect.filter(|aspect| *aspect > 0.0).unwrap_or(1.0);
+        let pixels = |size: f64| size.round().clamp(1.0, f64::from(MAX_SIZE)) as u32;
+        let (width, height) = match (size.0, size.1) {
+            (Some(width), Some(height)) => (width, height),
+            (Some(width), None) => (width, pixels(f64::from(width) / aspect)),
+            (None, height) => {
+                let height = height.unwrap_or(DEFAULT_HEIGHT);
+                (pixels(f64::from(height) * aspect), height)
+            }
+        };
+        let settings = Settings::default();
+        let scene = Arc::new(scene);
+        Ok(Shot {
+            scene,
+            camera,
+            width,
+            height,
+            lights,
+            settings,
+            notes,
+        })
+    }
+}
+
+fn scene_camera(scene: &Scene, index: Option<usize>) -> Result<Camera, String> {
+    let count = scene.cameras.len();
+    match (scene.cameras.get(index.unwrap_or(0)), index) {
+        (Some(camera), _) => Ok(camera.clone()),
+        (None, Some(index)) if count > 0 => Err(format!(
+            "has no camera {index}; it holds {count} camera(s), counted from 0"
+        )),
+        _ => Err(
+            "brings no camera; write a shot file with \"scene\", \"camera\" and \"lights\"".into(),
+        ),
+    }
+}
+
+impl From<CameraFile> for Camera {
+    fn from(file: CameraFile) -> Self {
+        Self {
+            name: "camera".into(),
+            eye: DVec3::from(file.eye),
+            target: DVec3::from(file.target),
+            up: DVec3::from(file.up),
+            vfov_deg: file.vfov_deg,
+            aspect: None,
+        }
+    }
+}
+
+impl LightFile {
+    fn into_light(self, index: usize) -> Result<AreaLight, String> {
+        let missing = |key| format!("light {index} lacks {key:?}");
+        let shape = match self.kind {
+            LightKind::Rect => LightShape::Rect {
+                u: self.u.ok_or_else(|| missing("u"))?.into(),
+                v: self.v.ok_or_else(|| missing("v"))?.into(),
+            },
+            LightKind::Disc => {
+                let radius = self.radius.ok_or_else(|| missing("radius"))?;
+                // A point shines in all directions.
+                let normal = match self.normal {
+                    None if radius == 0.0 => [0.0; 3],
+                    normal => normal.ok_or_else(|| missing("normal"))?,
+                };
+                LightShape::Disc {
+                    normal: normal.into(),
+                    radius,
+                }
+            }
+        };
+        Ok(AreaLight {
+            name: format!("light {index}"),
+            center: self.center.into(),
+            shape,
+            color: Vec3::from(self.color),
+            intensity: self.intensity,
+        })
+    }
+}

@@ -1,0 +1,503 @@
+//! What a well-formed glTF means.
+
+mod support;
+
+use glam::{DVec3, Vec2};
+use halfshade::scene::gltf::{LoadOptions, load, parse};
+use halfshade::scene::{LightShape, Wrap};
+use serde_json::{Value, json};
+use support::*;
+
+const A: [f64; 3] = [0.0, 0.0, 0.0];
+const B: [f64; 3] = [1.0, 0.0, 0.0];
+const C: [f64; 3] = [0.0, 1.0, 0.0];
+const D: [f64; 3] = [1.0, 1.0, 0.0];
+const SQUARE: [[f32; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [1.0, 1.0, 0.0],
+];
+
+/// A mesh of the square's corners with further properties of the primitive.
+fn square(primitive: Value) -> Gltf {
+    let mut gltf = Gltf::new();
+    let position = gltf.positions(&SQUARE);
+    add_primitive(&mut gltf, position, primitive);
+    gltf
+}
+
+fn add_primitive(gltf: &mut Gltf, position: usize, mut primitive: Value) {
+    primitive["attributes"]["POSITION"] = position.into();
+    gltf.mesh(primitive);
+}
+
+#[test]
+fn plain_triangles_from_gltf_and_glb() {
+    let gltf = Gltf::triangle();
+    let scene = gltf.load().unwrap();
+    assert_eq!(corners(&scene), [[A, B, C]]);
+    assert_eq!(scene.origin, DVec3::new(0.5, 0.5, 0.0));
+    assert_eq!((scene.opaque_count, scene.has_masked()), (1, false));
+    assert_eq!(
+        scene.texcoords.len() + scene.textures.len() + scene.notes.len(),
+        0
+    );
+    let path = std::path::Path::new("test.glb");
+    let glb = parse(path, &gltf.to_glb(), &LoadOptions::default()).unwrap();
+    assert_eq!(corners(&glb), [[A, B, C]]);
+}
+
+#[test]
+fn strips_and_fans_keep_their_winding() {
+    let strip = square(json!({"mode": 5})).load().unwrap();
+    assert_eq!(corners(&strip), [[A, B, C], [B, D, C]]);
+    let fan = square(json!({"mode": 6})).load().unwrap();
+    assert_eq!(corners(&fan), [[B, C, A], [C, D, A]]);
+}
+
+#[test]
+fn indices_of_every_width() {
+    let order = [0u8, 1, 3];
+    for (component, bytes) in [
+        (U8, order.to_vec()),
+        (
+            U16,
+            order
+                .iter()
+                .flat_map(|&i| u16::from(i).to_le_bytes())
+                .collect(),
+        ),
+        (
+            U32,
+            order
+                .iter()
+                .flat_map(|&i| u32::from(i).to_le_bytes())
+                .collect(),
+        ),
+    ] {
+        let mut gltf = Gltf::new();
+        let position = gltf.positions(&SQUARE);
+        let indices = gltf.accessor(&bytes, component, "SCALAR", 3);
+        add_primitive(&mut gltf, position, json!({"indices": indices}));
+        let scene = gltf.load().unwrap();
+        assert_eq!(corners(&scene), [[A, B, D]]);
+        assert_eq!(
+            scene.positions.len(),
+            3,
+            "vertices that no triangle names are left out"
+        );
+    }
+}
+
+#[test]
+fn sparse_accessors_with_and_without_a_base() {
+    for with_base in [true, false] {
+        let mut gltf = Gltf::new();
+        let base = gltf.positions(&[[0.0; 3], [9.0; 3], [0.0, 1.0, 0.0]]);
+        let indices = gltf.view(&[1, 2]);
+        let values = gltf.view(&bytes_of(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0]));
+        let accessor = &mut gltf.json["accessors"][base];
+        accessor["sparse"] = json!({
+            "count": 2, "indices": {"bufferView": indices, "componentType": U8},
+            "values": {"bufferView": values},
+        });
+        if !with_base {
+            accessor.as_object_mut().unwrap().remove("bufferView");
+        }
+        add_primitive(&mut gltf, base, json!({}));
+        assert_eq!(corners(&gltf.load().unwrap()), [[A, B, C]]);
+    }
+}
+
+#[test]
+fn interleaved_buffers() {
+    let mut gltf = Gltf::new();
+    let texture = gltf.texture(&png(1, 1, &[[255; 4]]));
+    let rows = [
+        0., 0., 0., 0.25, 0.5, 1., 0., 0., 1., 0., 0., 1., 0., 0., 1.,
+    ];
+    let view = gltf.view(&bytes_of(&rows));
+    gltf.json["bufferViews"][view]["byteStride"] = 20.into();
+    let mut accessor = |kind: &str, offset: usize| {
+        gltf.push(
+            "accessors",
+            json!({"bufferView": view, "byteOffset": offset, "componentType": F32, "type": kind, "count": 3}),
+        )
+    };
+    let (position, texcoord) = (accessor("VEC3", 0), accessor("VEC2", 12));
+    let material = textured(&mut gltf, texture, json!({}));
+    let primitive = json!({"attributes": {"TEXCOORD_0": texcoord}, "material": material});
+    add_primitive(&mut gltf, position, primitive);
+    let scene = gltf.load().unwrap();
+    assert_eq!(corners(&scene), [[A, B, C]]);
+    assert_eq!(scene.texcoords, [Vec2::new(0.25, 0.5), Vec2::X, Vec2::Y]);
+}
+
+/// A material with this base-colour texture and further properties of the texture's use.
+fn textured(gltf: &mut Gltf, texture: usize, mut info: Value) -> usize {
+    info["index"] = texture.into();
+    gltf.push(
+        "materials",
+        json!({"pbrMetallicRoughness": {"baseColorTexture": info}}),
+    )
+}
+
+#[test]
+fn texture_coordinates_may_be_normalized_integers() {
+    let u16s = [0u16, 65535, 13107, 0, 0, 0]
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    for (component, bytes) in [(U8, vec![0, 255, 51, 0, 0, 0]), (U16, u16s)] {
+        let mut gltf = Gltf::new();
+        let texture = gltf.texture(&png(1, 1, &[[255; 4]]));
+        let material = textured(&mut gltf, texture, json!({}));
+        let texcoord = gltf.accessor(&bytes, component, "VEC2", 3);
+        gltf.json["accessors"][texcoord]["normalized"] = true.into();
+        let position = gltf.positions(&SQUARE[..3]);
+        let primitive = json!({"attributes": {"TEXCOORD_0": texcoord}, "material": material});
+        add_primitive(&mut gltf, position, primitive);
+        assert_eq!(
+            gltf.load().unwrap().texcoords,
+            [Vec2::Y, Vec2::new(0.2, 0.0), Vec2::ZERO]
+        );
+        gltf.json["accessors"][texcoord]["normalized"] = false.into();
+        assert!(gltf.error().contains("TEXCOORD"));
+    }
+}
+
+#[test]
+fn texture_transforms_are_baked_in() {
+    let mut gltf = Gltf::new();
+    let texture = gltf.texture(&png(1, 1, &[[255; 4]]));
+    let transform = json!({
+        "offset": [0.5, 0.25], "scale": [2.0, 3.0], "texCoord": 1,
+        "rotation": std::f32::consts::FRAC_PI_2,
+    });
+    let info = json!({"texCoord": 0, "extensions": {"KHR_texture_transform": transform}});
+    let material = textured(&mut gltf, texture, info);
+    let unused = gltf.texcoords(&[[7.0, 7.0]; 3]);
+    let texcoord = gltf.texcoords(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    let position = gltf.positions(&SQUARE[..3]);
+    let attributes = json!({"TEXCOORD_0": unused, "TEXCOORD_1": texcoord});
+    add_primitive(
+        &mut gltf,
+        position,
+        json!({"attributes": attributes, "material": material}),
+    );
+    // A quarter turn counter-clockwise, v pointing down: (1, 0) → (0, -1) and (0, 1) → (1, 0).
+    let expected = [
+        Vec2::new(0.5, 0.25),
+        Vec2::new(0.5, -1.75),
+        Vec2::new(3.5, 0.25),
+    ];
+    for (got, expected) in gltf.load().unwrap().texcoords.iter().zip(expected) {
+        assert!(got.distance(expected) < 1e-6, "{got} instead of {expected}");
+    }
+}
+
+#[test]
+fn nodes_place_and_instance_meshes() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"][0] = json!({"children": [1, 2], "translation": [10.0, 0.0, 0.0]});
+    gltf.push(
+        "nodes",
+        json!({"mesh": 0, "scale": [2.0, 2.0, 2.0], "rotation": [0.0, 0.0, 1.0, 0.0]}),
+    );
+    let matrix = [
+        1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 5., 1.,
+    ];
+    gltf.push("nodes", json!({"mesh": 0, "matrix": matrix}));
+    let scene = gltf.load().unwrap();
+    let instances = [
+        [[10.0, 0.0, 0.0], [8.0, 0.0, 0.0], [10.0, -2.0, 0.0]],
+        [[10.0, 0.0, 5.0], [11.0, 0.0, 5.0], [10.0, 1.0, 5.0]],
+    ];
+    assert_eq!(corners(&scene), instances);
+}
+
+#[test]
+fn negative_determinants_flip_the_winding() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"][0]["scale"] = json!([1.0, 1.0, -1.0]);
+    assert_eq!(corners(&gltf.load().unwrap()), [[A, C, B]]);
+    gltf.json["nodes"][0]["scale"] = json!([1.0, -1.0, -1.0]);
+    assert_eq!(corners(&gltf.load().unwrap())[0][1], B);
+}
+
+#[test]
+fn distant_scenes_keep_their_precision() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"][0]["translation"] = json!([1e9 + 0.125, 0.0, 0.0]);
+    let scene = gltf.load().unwrap();
+    assert_eq!(scene.origin.x, 1e9 + 0.625);
+    assert_eq!(corners(&scene)[0][0][0], 1e9 + 0.125);
+}
+
+#[test]
+fn masked_triangles_come_last() {
+    let mut gltf = Gltf::new();
+    let texture = gltf.texture(&png(1, 2, &[[9, 8, 7, 0], [1, 2, 3, 255]]));
+    let texcoord = gltf.texcoords(&[[0.0; 2]; 3]);
+    let mut add = |x: f32, material: Value| {
+        let material = gltf.push("materials", material);
+        let position = gltf.positions(&[[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]]);
+        let attributes = json!({"TEXCOORD_0": texcoord});
+        add_primitive(
+            &mut gltf,
+            position,
+            json!({"attributes": attributes, "material": material}),
+        );
+    };
+    let factor = |alpha: f32| json!({"baseColorFactor": [0.5, 0.25, 0.125, alpha]});
+    let with_texture = json!({"baseColorTexture": {"index": texture}});
+    add(
+        0.0,
+        json!({"name": "leaf", "alphaMode": "MASK", "pbrMetallicRoughness": with_texture}),
+    );
+    add(
+        1.0,
+        json!({"alphaMode": "MASK", "alphaCutoff": 0.3, "pbrMetallicRoughness": factor(0.3)}),
+    );
+    add(
+        2.0,
+        json!({"alphaMode": "MASK", "pbrMetallicRoughness": factor(0.4)}),
+    );
+    add(3.0, json!({"alphaMode": "BLEND", "doubleSided": true}));
+    let scene = gltf.load().unwrap();
+    let x: Vec<_> = corners(&scene)
+        .iter()
+        .map(|triangle| triangle[0][0])
+        .collect();
+    assert_eq!(
+        x,
+        [1.0, 3.0, 0.0],
+        "the second is opaque, the third invisible"
+    );
+    assert_eq!(scene.opaque_count, 2);
+    let materials: Vec<_> = scene
+        .triangle_materials
+        .iter()
+        .map(|&index| &scene.materials[index as usize])
+        .collect();
+    assert_eq!(materials[0].base_color.to_array(), [0.5, 0.25, 0.125, 0.3]);
+    assert_eq!(
+        (materials[0].alpha_cutoff, materials[0].double_sided),
+        (None, false)
+    );
+    assert!(materials[1].double_sided);
+    assert_eq!(
+        (materials[2].name.as_str(), materials[2].alpha_cutoff),
+        ("leaf", Some(0.5))
+    );
+    assert_eq!(materials[2].texture, Some(0));
+    assert_eq!(scene.textures[0].rgba, [9, 8, 7, 0, 1, 2, 3, 255]);
+    assert!(noted(&scene, "BLEND") && noted(&scene, "below its cutoff"));
+}
+
+#[test]
+fn only_textures_of_visible_materials_are_read() {
+    let mut gltf = Gltf::triangle();
+    gltf.push("images", json!({"uri": "missing.png"}));
+    gltf.push("textures", json!({"source": 0}));
+    let used = textured(&mut gltf, 0, json!({}));
+    assert!(gltf.load().unwrap().textures.is_empty());
+    gltf.json["meshes"][0]["primitives"][0]["material"] = used.into();
+    assert!(gltf.error().contains("missing.png"));
+}
+
+#[test]
+fn images_come_from_files_views_and_data_uris() {
+    let folder = tempfile::tempdir().unwrap();
+    let texels = [[200, 100, 50, 255]; 64];
+    let jpeg = encode(8, 8, &texels, image::ImageFormat::Jpeg);
+    std::fs::write(folder.path().join("a b.jpg"), &jpeg).unwrap();
+    let mut gltf = Gltf::new();
+    gltf.push("images", json!({"uri": "./a%20b.jpg"}));
+    let base64 = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==";
+    gltf.push(
+        "images",
+        json!({"uri": format!("data:image/png;base64,{base64}")}),
+    );
+    gltf.push(
+        "samplers",
+        json!({"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}),
+    );
+    gltf.push("textures", json!({"source": 0}));
+    gltf.push("textures", json!({"source": 1, "sampler": 0}));
+    for texture in 0..2 {
+        let material = textured(&mut gltf, texture, json!({}));
+        let texcoord = gltf.texcoords(&[[0.0; 2]; 3]);
+        let position = gltf.positions(&SQUARE[..3]);
+        let attributes = json!({"TEXCOORD_0": texcoord});
+        add_primitive(
+            &mut gltf,
+            position,
+            json!({"attributes": attributes, "material": material}),
+        );
+    }
+    // The buffer is a file of its own too.
+    std::fs::write(folder.path().join("data.bin"), &gltf.bytes).unwrap();
+    gltf.json["buffers"][0]["uri"] = "data.bin".into();
+    let path = folder.path().join("scene.gltf");
+    std::fs::write(&path, serde_json::to_vec(&gltf.json).unwrap()).unwrap();
+    let scene = load(&path, &LoadOptions::default()).unwrap();
+    let [photo, dot] = &scene.textures[..] else {
+        panic!("two textures")
+    };
+    assert_eq!((photo.width, photo.height, photo.linear), (8, 8, true));
+    assert_eq!(photo.wrap, [Wrap::Repeat; 2]);
+    assert!(photo.rgba[0].abs_diff(200) < 8 && photo.rgba[3] == 255);
+    assert_eq!((dot.width, dot.height, dot.linear), (1, 1, false));
+    assert_eq!(dot.wrap, [Wrap::Clamp, Wrap::Mirror]);
+}
+
+#[test]
+fn one_of_several_scenes() {
+    let mut gltf = Gltf::triangle();
+    gltf.push("nodes", json!({"mesh": 0, "translation": [5.0, 0.0, 0.0]}));
+    gltf.push("scenes", json!({"nodes": [1]}));
+    let with = |scene| LoadOptions {
+        scene,
+        ..LoadOptions::default()
+    };
+    let x = |gltf: &Gltf, scene| corners(&gltf.load_with(&with(scene)).unwrap())[0][0][0];
+    assert_eq!(
+        (x(&gltf, None), x(&gltf, Some(0)), x(&gltf, Some(1))),
+        (0.0, 0.0, 5.0)
+    );
+    gltf.json["scene"] = 1.into();
+    assert_eq!(x(&gltf, None), 5.0);
+    assert!(
+        gltf.load_with(&with(Some(2)))
+            .unwrap_err()
+            .to_string()
+            .contains("no scene 2")
+    );
+}
+
+#[test]
+fn what_is_no_surface_is_left_out_and_noted() {
+    for mode in [0, 1, 2, 3] {
+        let scene = square(json!({"mode": mode})).load().unwrap();
+        assert!(scene.triangles.is_empty() && noted(&scene, "points and lines"));
+    }
+    let mut gltf = Gltf::new();
+    let position = gltf.positions(&[
+        [0.0; 3],
+        [1.0; 3],
+        [2.0; 3],
+        [0.0; 3],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ]);
+    add_primitive(&mut gltf, position, json!({}));
+    assert_eq!(
+        corners(&gltf.load().unwrap()),
+        [[A, B, C]],
+        "no area, no triangle"
+    );
+}
+
+#[test]
+fn perspective_cameras() {
+    let mut gltf = Gltf::triangle();
+    gltf.push(
+        "cameras",
+        json!({"type": "perspective", "perspective": {"yfov": 1.0, "aspectRatio": 1.5, "znear": 0.1}}),
+    );
+    let lens = json!({"xmag": 1.0, "ymag": 1.0, "zfar": 9.0, "znear": 0.1});
+    gltf.push(
+        "cameras",
+        json!({"type": "orthographic", "orthographic": lens}),
+    );
+    // A quarter turn about y: −Z becomes −X.
+    let quarter = std::f64::consts::FRAC_1_SQRT_2;
+    gltf.node(json!({
+        "camera": 0, "name": "eye", "translation": [5.0, 0.5, 0.0], "scale": [3.0, 3.0, 3.0],
+        "rotation": [0.0, quarter, 0.0, quarter],
+    }));
+    gltf.node(json!({"camera": 1}));
+    let scene = gltf.load().unwrap();
+    let [camera] = &scene.cameras[..] else {
+        panic!("one camera")
+    };
+    assert_eq!(
+        (camera.name.as_str(), camera.eye),
+        ("eye", DVec3::new(5.0, 0.5, 0.0))
+    );
+    assert!(camera.target.distance(DVec3::new(0.5, 0.5, 0.0)) < 1e-9);
+    assert!(camera.up.distance(DVec3::Y) < 1e-9);
+    assert!((camera.vfov_deg - 1f64.to_degrees()).abs() < 1e-9);
+    assert_eq!(camera.aspect, Some(1.5));
+    assert!(noted(&scene, "not a perspective one"));
+}
+
+#[test]
+fn area_lights() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["extensionsUsed"] = json!(["EXT_lights_area"]);
+    gltf.json["extensionsRequired"] = json!(["EXT_lights_area"]);
+    gltf.json["extensions"]["EXT_lights_area"]["lights"] = json!([
+        {"type": "rect", "name": "panel", "size": 2.0, "rect": {"aspect": 3.0}, "intensity": 7.5},
+        {"type": "disk", "size": 4.0, "color": [1.0, 0.5, 0.25]},
+        {"type": "sphere"},
+    ]);
+    let light = |index| json!({"EXT_lights_area": {"light": index}});
+    gltf.node(
+        json!({"extensions": light(0), "translation": [0.0, 0.0, 9.0], "scale": [1.0, -2.0, 1.0]}),
+    );
+    gltf.node(json!({"extensions": light(1), "rotation": [1.0, 0.0, 0.0, 0.0]}));
+    gltf.node(json!({"extensions": light(2)}));
+    let scene = gltf.load().unwrap();
+    let [panel, disk] = &scene.lights[..] else {
+        panic!("two lights")
+    };
+    assert_eq!((panel.name.as_str(), panel.intensity), ("panel", Some(7.5)));
+    assert_eq!(panel.center, DVec3::new(0.0, 0.0, 9.0));
+    assert_eq!(panel.half_size(), (6.0, 2.0));
+    assert_eq!(panel.frame().2, DVec3::NEG_Z);
+    assert_eq!(
+        disk.shape,
+        LightShape::Disc {
+            normal: DVec3::Z,
+            radius: 2.0
+        }
+    );
+    assert_eq!(
+        (disk.color.to_array(), disk.intensity),
+        ([1.0, 0.5, 0.25], None)
+    );
+    assert!(noted(&scene, "neither rect nor disk"));
+    gltf.node(json!({"extensions": light(3)}));
+    assert!(gltf.error().contains("area light 3, which does not exist"));
+}
+
+#[test]
+fn punctual_lights_need_a_radius() {
+    let mut gltf = Gltf::triangle();
+    gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
+        {"type": "point", "intensity": 50.0}, {"type": "spot", "spot": {}}, {"type": "directional"},
+    ]);
+    for light in 0..3 {
+        let light = json!({"KHR_lights_punctual": {"light": light}});
+        gltf.node(json!({"extensions": light, "translation": [0.5, 0.5, 4.0]}));
+    }
+    let scene = gltf.load().unwrap();
+    assert!(scene.lights.is_empty());
+    assert!(noted(&scene, "pass --radius") && noted(&scene, "suns"));
+    gltf.json["nodes"][1]["translation"] = json!([0.5, 4.5, 0.0]);
+    let options = LoadOptions {
+        punctual_radius: Some(0.25),
+        ..LoadOptions::default()
+    };
+    let scene = gltf.load_with(&options).unwrap();
+    let shapes: Vec<_> = scene.lights.iter().map(|light| light.shape).collect();
+    let disc = |normal| LightShape::Disc {
+        normal,
+        radius: 0.25,
+    };
+    assert_eq!(shapes, [disc(DVec3::NEG_Y), disc(DVec3::NEG_Z)]);
+    assert_eq!(scene.lights[0].intensity, None);
+}

@@ -1,0 +1,195 @@
+//! Builds small glTF files in memory.
+#![allow(dead_code)] // Each test program uses a part of it.
+
+use std::path::Path;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use halfshade::Result;
+use halfshade::scene::Scene;
+use halfshade::scene::gltf::{LoadOptions, parse};
+use serde_json::{Value, json};
+
+pub const U8: u32 = 5121;
+pub const U16: u32 = 5123;
+pub const U32: u32 = 5125;
+pub const F32: u32 = 5126;
+
+/// A glTF with one scene and one buffer.
+#[derive(Clone)]
+pub struct Gltf {
+    pub json: Value,
+    pub bytes: Vec<u8>,
+}
+
+impl Gltf {
+    pub fn new() -> Self {
+        let json = json!({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}],
+            "buffers": [{"byteLength": 0}],
+        });
+        Self {
+            json,
+            bytes: Vec::new(),
+        }
+    }
+
+    /// One node with one mesh of one primitive of the triangle (0,0,0) (1,0,0) (0,1,0).
+    pub fn triangle() -> Self {
+        let mut gltf = Self::new();
+        let position = gltf.positions(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        gltf.mesh(json!({"attributes": {"POSITION": position}}));
+        gltf
+    }
+
+    /// Appends to a top-level list and returns the index.
+    pub fn push(&mut self, list: &str, value: Value) -> usize {
+        if self.json[list].is_null() {
+            self.json[list] = json!([]);
+        }
+        let list = self.json[list].as_array_mut().unwrap();
+        list.push(value);
+        list.len() - 1
+    }
+
+    pub fn view(&mut self, bytes: &[u8]) -> usize {
+        let offset = self.bytes.len();
+        self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.json["buffers"][0]["byteLength"] = self.bytes.len().into();
+        let view = json!({"buffer": 0, "byteOffset": offset, "byteLength": bytes.len()});
+        self.push("bufferViews", view)
+    }
+
+    pub fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
+        let view = self.view(bytes);
+        let accessor =
+            json!({"bufferView": view, "componentType": component, "type": kind, "count": count});
+        self.push("accessors", accessor)
+    }
+
+    pub fn positions(&mut self, positions: &[[f32; 3]]) -> usize {
+        self.accessor(
+            &bytes_of(positions.as_flattened()),
+            F32,
+            "VEC3",
+            positions.len(),
+        )
+    }
+
+    pub fn texcoords(&mut self, texcoords: &[[f32; 2]]) -> usize {
+        self.accessor(
+            &bytes_of(texcoords.as_flattened()),
+            F32,
+            "VEC2",
+            texcoords.len(),
+        )
+    }
+
+    /// A mesh of one primitive and a node of scene 0 that shows it; returns the mesh.
+    pub fn mesh(&mut self, primitive: Value) -> usize {
+        let mesh = self.push("meshes", json!({"primitives": [primitive]}));
+        self.node(json!({"mesh": mesh}));
+        mesh
+    }
+
+    /// A node at the root of scene 0.
+    pub fn node(&mut self, node: Value) -> usize {
+        let node = self.push("nodes", node);
+        self.json["scenes"][0]["nodes"]
+            .as_array_mut()
+            .unwrap()
+            .push(node.into());
+        node
+    }
+
+    /// A texture whose image lies in the buffer.
+    pub fn texture(&mut self, png: &[u8]) -> usize {
+        let view = self.view(png);
+        let image = self.push(
+            "images",
+            json!({"bufferView": view, "mimeType": "image/png"}),
+        );
+        self.push("textures", json!({"source": image}))
+    }
+
+    /// .gltf text with the buffer in a data URI.
+    pub fn to_gltf(&self) -> Vec<u8> {
+        let mut json = self.json.clone();
+        if !self.bytes.is_empty() {
+            let data = STANDARD.encode(&self.bytes);
+            json["buffers"][0]["uri"] =
+                format!("data:application/octet-stream;base64,{data}").into();
+        }
+        serde_json::to_vec(&json).unwrap()
+    }
+
+    pub fn to_glb(&self) -> Vec<u8> {
+        let mut json = serde_json::to_vec(&self.json).unwrap();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let length = 12 + 8 + json.len() + 8 + self.bytes.len();
+        let mut glb = b"glTF".to_vec();
+        glb.extend(2u32.to_le_bytes());
+        glb.extend((length as u32).to_le_bytes());
+        for (kind, chunk) in [(b"JSON", &json), (b"BIN\0", &self.bytes)] {
+            glb.extend((chunk.len() as u32).to_le_bytes());
+            glb.extend(kind);
+            glb.extend(chunk);
+        }
+        glb
+    }
+
+    pub fn load(&self) -> Result<Scene> {
+        self.load_with(&LoadOptions::default())
+    }
+
+    pub fn load_with(&self, options: &LoadOptions) -> Result<Scene> {
+        parse(Path::new("test.gltf"), &self.to_gltf(), options)
+    }
+
+    /// The message with which loading fails.
+    pub fn error(&self) -> String {
+        self.load()
+            .expect_err("this file must be refused")
+            .to_string()
+    }
+}
+
+pub fn bytes_of(values: &[f32]) -> Vec<u8> {
+    values
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect()
+}
+
+/// A PNG of these RGBA texels.
+pub fn png(width: u32, height: u32, texels: &[[u8; 4]]) -> Vec<u8> {
+    encode(width, height, texels, image::ImageFormat::Png)
+}
+
+pub fn encode(width: u32, height: u32, texels: &[[u8; 4]], format: image::ImageFormat) -> Vec<u8> {
+    let image = image::RgbaImage::from_raw(width, height, texels.as_flattened().to_vec()).unwrap();
+    let mut file = std::io::Cursor::new(Vec::new());
+    let image = image::DynamicImage::from(image);
+    match format {
+        image::ImageFormat::Jpeg => image.to_rgb8().write_to(&mut file, format).unwrap(),
+        _ => image.write_to(&mut file, format).unwrap(),
+    }
+    file.into_inner()
+}
+
+/// The corners of all triangles in world space, in order.
+pub fn corners(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
+    (0..scene.triangles.len())
+        .map(|i| {
+            scene
+                .corners(i)
+                .map(|p| (scene.origin + p.as_dvec3()).to_array())
+        })
+        .collect()
+}
+
+/// Whether a note of the scene holds this text.
+pub fn noted(scene: &Scene, text: &str) -> bool {
+    scene.notes.iter().any(|note| note.contains(text))
+}
