@@ -17,11 +17,13 @@ struct Arguments {
 #[derive(Debug, clap::Subcommand)]
 enum Command {
     Compare(cli::compare::Args),
+    Reference(cli::reference::Args),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Compare(args) => cli::compare::run(&args),
+        Command::Reference(args) => cli::reference::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

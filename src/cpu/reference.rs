@@ -15,8 +15,9 @@ use crate::shot::Shot;
 use crate::{Error, Result};
 
 /// Independent randomisations of the points on the light in each pixel. Their spread gives the
-/// standard error, with 15 degrees of freedom.
-pub const BATCHES: u32 = 16;
+/// standard error, with 7 degrees of freedom; more of them would make the image itself noisier, since
+/// only the points within one are evenly spread.
+pub const BATCHES: u32 = 8;
 
 /// How far a shadow ray starts from its surface, along the normal of its visible side, per largest
 /// coordinate of the triangle: 8 times the rounding that its f32 coordinates carry. Nearer occluders
