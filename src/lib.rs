@@ -1,6 +1,12 @@
 //! Soft shadows of area lights.
+#[cfg(feature = "cli")]
+pub mod compare;
+#[cfg(feature = "cli")]
+pub mod cpu;
 pub mod error;
 pub mod gpu;
+#[cfg(feature = "cli")]
+pub mod image;
 pub mod plan;
 pub mod render;
 pub mod scene;

@@ -1,0 +1,48 @@
+//! The subcommands: each has its arguments and a `run` that returns an error or prints its result.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use halfshade::shot::{MAX_SIZE, Shot};
+use halfshade::{Error, Result};
+
+pub mod compare;
+pub mod reference;
+
+/// Prints to stdout; a reader that has gone away (`| head`) is no error.
+///
+/// # Errors
+/// When stdout cannot be written to, such as a full disk.
+pub fn print(text: &str) -> Result<()> {
+    let mut stdout = io::stdout().lock();
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Error::io(Path::new("standard output"), error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What was ignored or changed when the shot was read, a line each on stderr.
+pub fn print_notes(shot: &Shot) {
+    for note in shot.scene.notes.iter().chain(&shot.notes) {
+        // Nobody is left to tell when stderr is closed.
+        let _ = writeln!(io::stderr(), "note: {note}");
+    }
+}
+
+/// The value of `--size`: `WxH` in pixels, each from 1 to 32768.
+pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| {
+        text.parse()
+            .ok()
+            .filter(|side| (1..=MAX_SIZE).contains(side))
+    };
+    let sides = text.split_once(['x', 'X', '×']);
+    sides
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| format!("a size is written 640x480, each side from 1 to {MAX_SIZE}"))
+}

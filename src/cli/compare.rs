@@ -1,0 +1,180 @@
+//! `halfshade compare`: error metrics between two images.
+
+use std::path::{Path, PathBuf};
+
+use halfshade::compare::{
+    HEATMAP_LEGEND, Metrics, PictureMetrics, compare, compare_pictures, heatmap,
+};
+use halfshade::image::{Plane, check_writable, read_exr, read_png, write_png};
+use halfshade::{Error, Result};
+
+use super::print;
+
+/// Compares an image with its reference: OpenEXR visibility by error metrics, PNG pictures by FLIP.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The image to judge (.exr or .png)
+    image: PathBuf,
+    /// The image to judge it by (.exr or .png)
+    reference: PathBuf,
+    /// Write a picture of the error: signed for .exr, the FLIP map for .png
+    #[arg(long, value_name = "FILE.png")]
+    heatmap: Option<PathBuf>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Compare only pixels whose surface faces the whole light (channel `facing` of the reference)
+    #[arg(long)]
+    facing: bool,
+    /// The channel to compare [default: Y, or the only one there is]
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
+}
+
+/// # Errors
+/// When a file, a channel or a size is not what a comparison needs.
+pub fn run(args: &Args) -> Result<()> {
+    if let Some(path) = &args.heatmap {
+        check_writable(path)?;
+    }
+    match (is_png(&args.image), is_png(&args.reference)) {
+        (true, true) => run_pictures(args),
+        (false, false) => run_planes(args),
+        _ => Err(Error::Invalid(
+            "a .png and an .exr cannot be compared with each other".into(),
+        )),
+    }
+}
+
+fn is_png(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+}
+
+fn run_planes(args: &Args) -> Result<()> {
+    let image = take_channel(&args.image, read_exr(&args.image)?, args.channel.as_deref())?;
+    let mut channels = read_exr(&args.reference)?;
+    let facing = match args.facing {
+        true => Some(take_facing(&args.reference, &mut channels)?),
+        false => None,
+    };
+    let reference = take_channel(&args.reference, channels, args.channel.as_deref())?;
+    let metrics = compare(&image, &reference, facing.as_ref())?;
+    if let Some(path) = &args.heatmap {
+        let rgb8 = heatmap(&image, &reference)?;
+        write_png(path, image.width as u32, image.height as u32, &rgb8)?;
+    }
+    match args.json {
+        true => print(&json_text(&metrics)),
+        false => print(&table(&metrics, args)),
+    }
+}
+
+fn run_pictures(args: &Args) -> Result<()> {
+    if args.facing || args.channel.is_some() {
+        return Err(Error::Invalid(
+            "--facing and --channel are for .exr images, not for pictures".into(),
+        ));
+    }
+    let image = read_png(&args.image)?;
+    let (metrics, map) = compare_pictures(&image, &read_png(&args.reference)?)?;
+    if let Some(path) = &args.heatmap {
+        write_png(path, image.width, image.height, &map)?;
+    }
+    match args.json {
+        true => print(&json_text(&metrics)),
+        false => print(&picture_table(&metrics)),
+    }
+}
+
+/// The channel called `name`; without a name `Y`, or else the only one.
+fn take_channel(path: &Path, channels: Vec<(String, Plane)>, name: Option<&str>) -> Result<Plane> {
+    let names: Vec<String> = channels.iter().map(|(name, _)| name.clone()).collect();
+    let wanted = name.unwrap_or("Y");
+    let alone = name.is_none() && channels.len() == 1;
+    let found = channels
+        .into_iter()
+        .find(|(name, _)| alone || name == wanted);
+    found.map(|(_, plane)| plane).ok_or_else(|| {
+        let names = names.join(", ");
+        Error::parse(
+            path,
+            format!("has no channel {wanted}; it has {names} (--channel picks one)"),
+        )
+    })
+}
+
+fn take_facing(path: &Path, channels: &mut Vec<(String, Plane)>) -> Result<Plane> {
+    let index = channels
+        .iter()
+        .position(|(name, _)| name == "facing")
+        .ok_or_else(|| {
+            Error::parse(
+                path,
+                "has no channel facing, which --facing needs; `halfshade reference` writes it",
+            )
+        })?;
+    Ok(channels.remove(index).1)
+}
+
+fn json_text(metrics: &impl serde::Serialize) -> String {
+    // Numbers under literal keys: this serialisation cannot fail.
+    format!("{}\n", serde_json::json!(metrics))
+}
+
+fn table(m: &Metrics, args: &Args) -> String {
+    let row = |what: &str, all: &str, shadow: &str| {
+        let row = format!("{what:<34}{all:>12}{shadow:>16}");
+        row.trim_end().to_string() + "\n"
+    };
+    let number = |value: f64| format!("{value:.6}");
+    let shadow = |value: f64| match m.shadow_pixels {
+        0 => "–".to_string(),
+        _ => number(value),
+    };
+    let mut text = "error = image − reference, in visibility (0 umbra … 1 lit)\n\n".to_string();
+    text += &row("", "all pixels", "shadow pixels");
+    let counts = (m.pixels.to_string(), m.shadow_pixels.to_string());
+    text += &row("pixels compared", &counts.0, &counts.1);
+    for (what, all, in_shadow) in [
+        ("mean absolute error (MAE)", m.mae, m.mae_shadow),
+        ("root mean square error (RMSE)", m.rmse, m.rmse_shadow),
+        ("signed mean (+ = too bright)", m.bias, m.bias_shadow),
+        (
+            "share with |error| > 0.05",
+            m.share_over_0_05,
+            m.share_over_0_05_shadow,
+        ),
+    ] {
+        text += &row(what, &number(all), &shadow(in_shadow));
+    }
+    text += &row("99th percentile of |error|", "", &shadow(m.p99));
+    text += &row("maximum of |error|", &number(m.max), "");
+    text += "\nshadow pixels: reference below 1\n";
+    text += &format!(
+        "{} pixel(s) have a surface in only one of the images: left out\n",
+        m.mismatched
+    );
+    if args.facing {
+        text += &format!(
+            "{} pixel(s) do not face the whole light: left out\n",
+            m.left_out_by_facing
+        );
+    }
+    if let Some(path) = &args.heatmap {
+        text += &format!("{}: {HEATMAP_LEGEND}\n", path.display());
+    }
+    text
+}
+
+fn picture_table(m: &PictureMetrics) -> String {
+    format!(
+        "{:<34}{:>12}\n{:<34}{:>12.6}\n{:<34}{:>12.6}\n",
+        "pixels compared",
+        m.pixels,
+        "FLIP, mean (0 = same … 1)",
+        m.flip,
+        "RMSE of the stored values (0 … 1)",
+        m.rmse
+    )
+}

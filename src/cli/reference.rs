@@ -1,0 +1,105 @@
+//! `halfshade reference`: ray-traced ground truth.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use halfshade::cpu::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
+use halfshade::image::{check_writable, write_exr};
+use halfshade::shot::{Overrides, Shot};
+
+use halfshade::{Error, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{parse_size, print, print_notes};
+
+/// Traces the true visibility of a light with rays, on the CPU.
+///
+/// Writes three channels: Y (visibility), facing (share of the light in front of the surface) and
+/// stderr (standard error of Y).
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A shot file (.json), or a .gltf or .glb with a camera and a light
+    shot: PathBuf,
+    /// The image to write
+    #[arg(short, long, value_name = "FILE.exr")]
+    output: PathBuf,
+    /// Shadow rays per pixel, rounded up to a multiple of 8
+    #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=65536))]
+    samples: u32,
+    /// Another seed gives independent noise
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Size of the image instead of the shot's
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(u32, u32)>,
+    /// Which of the shot's lights, counted from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    light: usize,
+}
+
+/// # Errors
+/// When the shot cannot be read or traced, when the image cannot be written, or on Ctrl-C; then no
+/// file is left.
+pub fn run(args: &Args) -> Result<()> {
+    check_writable(&args.output)?;
+    let overrides = Overrides {
+        size: args.size,
+        ..Overrides::default()
+    };
+    let shot = Shot::load(&args.shot, &overrides)?;
+    print_notes(&shot);
+    let cancel = Arc::new(AtomicBool::new(false));
+    let on_interrupt = Arc::clone(&cancel);
+    ctrlc::set_handler(move || on_interrupt.store(true, Ordering::Relaxed))
+        .map_err(|error| Error::Invalid(format!("Ctrl-C cannot be caught: {error}")))?;
+    let start = Instant::now();
+    let options = ReferenceOptions {
+        samples: args.samples,
+        seed: args.seed,
+    };
+    // Drawn on stderr, and only where that is a terminal.
+    let bar = ProgressBar::new(1000).with_style(style());
+    let progress = |share: f64| bar.set_position((share * 1000.0) as u64);
+    let traced = trace(&shot, args.light, options, &progress, &cancel);
+    bar.finish_and_clear();
+    let image = traced.map_err(|error| match cancel.load(Ordering::Relaxed) {
+        true => Error::Invalid(format!(
+            "interrupted, {} was not written",
+            args.output.display()
+        )),
+        false => error,
+    })?;
+    let channels = [
+        ("Y", &image.visibility),
+        ("facing", &image.facing),
+        ("stderr", &image.standard_error),
+    ];
+    write_exr(&args.output, &channels)?;
+    print(&summary(args, &image, start.elapsed().as_secs_f64()))
+}
+
+fn style() -> ProgressStyle {
+    let template = "tracing {wide_bar} {percent:>3} % {eta:>6} left";
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+fn summary(args: &Args, image: &ReferenceImage, seconds: f64) -> String {
+    let errors: Vec<f64> = (image.standard_error.data.iter())
+        .filter(|error| !error.is_nan())
+        .map(|&error| f64::from(error))
+        .collect();
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    let root_mean_square = (squares / errors.len().max(1) as f64).sqrt();
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    let samples = args.samples.next_multiple_of(BATCHES);
+    format!(
+        "{}: {}×{} pixels, {samples} rays each, in {seconds:.1} s; standard error {root_mean_square:.5} \
+         (root mean square over {} pixels with a surface), at most {largest:.5}\n",
+        args.output.display(),
+        image.visibility.width,
+        image.visibility.height,
+        errors.len()
+    )
+}

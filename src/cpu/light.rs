@@ -1,0 +1,173 @@
+//! An area light as a set of points.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+use glam::DVec3;
+
+use crate::scene::{AreaLight, LightShape};
+use crate::{Error, Result};
+
+/// A light that can be sampled, relative to the scene's origin.
+pub struct Emitter {
+    center: DVec3,
+    /// Half-axis vectors; for a disc two perpendicular radii.
+    axes: [DVec3; 2],
+    /// The side it shines to; None where the shape has no plane (a point, a line): to all sides.
+    normal: Option<DVec3>,
+    disc: bool,
+}
+
+impl Emitter {
+    /// # Errors
+    /// When the light has numbers that are not finite, or a disc no normal.
+    pub fn new(light: &AreaLight, origin: DVec3) -> Result<Self> {
+        let (axes, normal, disc) = match light.shape {
+            LightShape::Rect { u, v } => ([u, v], u.cross(v).try_normalize(), false),
+            LightShape::Disc { normal, radius } => {
+                let normal = normal.try_normalize().ok_or_else(|| {
+                    Error::Invalid(format!(
+                        "the normal of light “{}” has no direction",
+                        light.name
+                    ))
+                })?;
+                let (a, b) = normal.any_orthonormal_pair();
+                ([a * radius, b * radius], Some(normal), true)
+            }
+        };
+        let center = light.center - origin;
+        if ![center, axes[0], axes[1]].iter().all(|v| v.is_finite()) {
+            let name = &light.name;
+            return Err(Error::Invalid(format!(
+                "light “{name}” has a number that is not finite"
+            )));
+        }
+        Ok(Self {
+            center,
+            axes,
+            normal,
+            disc,
+        })
+    }
+
+    /// Whether it has no extent, so that all samples are the same.
+    pub fn is_point(&self) -> bool {
+        self.axes == [DVec3::ZERO; 2]
+    }
+
+    /// The point at (a, b) ∈ [0, 1)², equal areas to equal areas; a disc by the concentric map
+    /// [Shirley and Chiu 1997], which keeps neighbours together.
+    pub fn point(&self, a: f64, b: f64) -> DVec3 {
+        let (s, t) = (2.0 * a - 1.0, 2.0 * b - 1.0);
+        let (s, t) = if self.disc { concentric(s, t) } else { (s, t) };
+        self.center + self.axes[0] * s + self.axes[1] * t
+    }
+
+    /// [0, 1] The share of the light's area that is in front of the plane through `point` with
+    /// `normal`; 0 where `point` is not on the side that the light shines to.
+    pub fn share_in_front(&self, point: DVec3, normal: DVec3) -> f64 {
+        let to_center = self.center - point;
+        if self
+            .normal
+            .is_some_and(|shines| shines.dot(to_center) >= 0.0)
+        {
+            return 0.0;
+        }
+        let height = normal.dot(to_center);
+        let [a, b] = self.axes.map(|axis| normal.dot(axis));
+        match self.disc {
+            true => disc_share(height, a.hypot(b)),
+            false => square_share(height, a, b),
+        }
+    }
+}
+
+fn concentric(s: f64, t: f64) -> (f64, f64) {
+    if s == 0.0 && t == 0.0 {
+        return (0.0, 0.0);
+    }
+    let (radius, angle) = if s.abs() > t.abs() {
+        (s, FRAC_PI_4 * (t / s))
+    } else {
+        (t, FRAC_PI_2 - FRAC_PI_4 * (s / t))
+    };
+    (radius * angle.cos(), radius * angle.sin())
+}
+
+/// The share of the unit disc on which height + reach · x > 0.
+fn disc_share(height: f64, reach: f64) -> f64 {
+    if height >= reach {
+        return if height > 0.0 { 1.0 } else { 0.0 };
+    }
+    if height <= -reach {
+        return 0.0;
+    }
+    let x = height / reach;
+    1.0 - (x.acos() - x * (1.0 - x * x).sqrt()) / PI
+}
+
+/// The share of the square [−1, 1]² on which height + a s + b t > 0: the square clipped by the line,
+/// its area by the shoelace formula.
+fn square_share(height: f64, a: f64, b: f64) -> f64 {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let above = |[s, t]: [f64; 2]| height + a * s + b * t;
+    if corners.iter().all(|&corner| above(corner) > 0.0) {
+        return 1.0;
+    }
+    let mut clipped: Vec<[f64; 2]> = Vec::with_capacity(5);
+    for (index, &from) in corners.iter().enumerate() {
+        let to = corners[(index + 1) % 4];
+        let (h0, h1) = (above(from), above(to));
+        if h0 > 0.0 {
+            clipped.push(from);
+        }
+        if (h0 > 0.0) != (h1 > 0.0) {
+            let share = h0 / (h0 - h1);
+            clipped.push([0, 1].map(|k| from[k] + (to[k] - from[k]) * share));
+        }
+    }
+    let next = clipped.iter().cycle().skip(1);
+    let doubled: f64 = clipped
+        .iter()
+        .zip(next)
+        .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
+        .sum();
+    (doubled / 8.0).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_by_hand() {
+        assert_eq!(square_share(1.0, 0.0, 0.0), 1.0);
+        assert_eq!(square_share(-1.0, 0.0, 0.0), 0.0);
+        assert_eq!(square_share(0.0, 0.0, 0.0), 0.0);
+        assert_eq!(square_share(0.0, 1.0, 0.0), 0.5);
+        assert_eq!(square_share(0.0, -2.0, 2.0), 0.5);
+        assert_eq!(square_share(0.5, 1.0, 0.0), 0.75);
+        // All but a corner triangle with legs of 1.
+        assert_eq!(square_share(1.0, 1.0, 1.0), 0.875);
+        assert_eq!(disc_share(0.0, 0.0), 0.0);
+        assert_eq!(disc_share(2.0, 1.0), 1.0);
+        assert_eq!(disc_share(-2.0, 1.0), 0.0);
+        assert!((disc_share(0.0, 3.0) - 0.5).abs() < 1e-15);
+        // A segment at half the radius: 1/3 − √3 / 4π of the disc is cut away.
+        assert!((disc_share(0.5, 1.0) - (2.0 / 3.0 + 3f64.sqrt() / (4.0 * PI))).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_concentric_map_keeps_areas() {
+        // A grid over the square: the share of points within radius r must be r².
+        let side = 400;
+        let grid = |i: usize| 2.0 * (i as f64 + 0.5) / side as f64 - 1.0;
+        let radii: Vec<f64> = (0..side * side)
+            .map(|i| concentric(grid(i % side), grid(i / side)))
+            .map(|(x, y)| x.hypot(y))
+            .collect();
+        for r in [0.25, 0.5, 0.75, 1.0] {
+            let inside = radii.iter().filter(|&&radius| radius <= r).count() as f64;
+            assert!((inside / (side * side) as f64 - r * r).abs() < 0.005, "{r}");
+        }
+    }
+}
