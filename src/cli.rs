@@ -6,8 +6,19 @@ use std::path::Path;
 use halfshade::shot::{MAX_SIZE, Shot};
 use halfshade::{Error, Result};
 
+pub mod calibration;
 pub mod compare;
+pub mod devices;
+pub mod plan;
 pub mod reference;
+pub mod render;
+pub mod shot_args;
+mod stats;
+
+/// The user's folders for caches and data. None: there is no home folder.
+pub fn project_folders() -> Option<directories::ProjectDirs> {
+    directories::ProjectDirs::from("", "", "halfshade")
+}
 
 /// Prints to stdout; a reader that has gone away (`| head`) is no error.
 ///

@@ -16,14 +16,20 @@ struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    Compare(cli::compare::Args),
+    Render(cli::render::Args),
+    Plan(cli::plan::Args),
     Reference(cli::reference::Args),
+    Compare(cli::compare::Args),
+    Devices(cli::devices::Args),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Compare(args) => cli::compare::run(&args),
+        Command::Render(args) => cli::render::run(&args),
+        Command::Plan(args) => cli::plan::run(&args),
         Command::Reference(args) => cli::reference::run(&args),
+        Command::Compare(args) => cli::compare::run(&args),
+        Command::Devices(args) => cli::devices::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -235,11 +235,12 @@ impl Recorder {
         let timer = self.names.len() as u32;
         self.names.push(name.to_owned());
         self.label(Some(name));
+        // The timestamp before the barrier: lavapipe takes it at the next flush, which is the barrier.
+        self.timestamp(2 * timer);
         self.barrier(
             vk::PipelineStageFlags2::ALL_COMMANDS,
             vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE,
         );
-        self.timestamp(2 * timer);
         record(&self.gpu.device, self.commands);
         self.timestamp(2 * timer + 1);
         self.label(None);

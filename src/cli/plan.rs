@@ -1,0 +1,29 @@
+//! `halfshade plan`: what will run, and what is left out and why.
+
+use halfshade::Result;
+use halfshade::plan::{Outputs, plan};
+
+use super::calibration::Calibration;
+use super::shot_args::{DeviceArgs, ShotArgs};
+
+/// Prints the passes that a shot needs, with sizes and memory, and what is left out and why.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    shot: ShotArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
+    /// Plan for the visibility alone, without a shaded picture
+    #[arg(long)]
+    visibility_only: bool,
+}
+
+/// # Errors
+/// When the shot can't be read or exceeds the device's limits.
+pub fn run(args: &Args) -> Result<()> {
+    args.device.with_device(|gpu| {
+        let shot = args.shot.load(&Calibration::of(&gpu.info))?;
+        let outputs = Outputs { picture: !args.visibility_only };
+        super::print(&plan(&shot, outputs, &gpu.limits, false)?.to_string())
+    })
+}

@@ -1,0 +1,132 @@
+//! The flags that commands share: what to render, and on which device.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+use halfshade::gpu::{Gpu, Options};
+use halfshade::shot::{Leaf, Mapping, Overrides, Settings, Shot, Technique};
+use halfshade::{Error, Result};
+
+use super::calibration::Calibration;
+use super::{parse_size, print_notes};
+
+/// What to render and how.
+#[derive(Debug, clap::Args)]
+pub struct ShotArgs {
+    /// A shot file (.json), or a .gltf or .glb with a camera and a light
+    pub shot: PathBuf,
+    /// Which publication computes the visibility: packet-contour, pixel-contour or hard
+    #[arg(long, value_name = "NAME", default_value_t = Technique::PacketContour)]
+    technique: Technique,
+    /// Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path [default: calibrated]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    packet: Option<(u32, u32)>,
+    /// What a leaf does where a packet's pixels disagree: reprocess or per-pixel [default: calibrated]
+    #[arg(long, value_name = "RULE")]
+    leaf: Option<Leaf>,
+    /// How a packet maps to shader invocations: serial or lanes [default: calibrated]
+    #[arg(long, value_name = "MAPPING")]
+    mapping: Option<Mapping>,
+    /// Cut each light into N×N sub-lights, 1 to 16
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    split: u32,
+    /// Width of a shadow map in texels, 16 to 8192
+    #[arg(long, value_name = "R", default_value_t = 512)]
+    map: u32,
+    /// Bias in texels of the receiver's slope
+    #[arg(long, value_name = "TEXELS", default_value_t = 1.5)]
+    bias: f32,
+    /// Visit nodes whose back-projection misses the light as well, as the paper does
+    #[arg(long)]
+    no_footprint_pruning: bool,
+    /// With pixel-contour: walk the MSSM instead of every cell of the kernel
+    #[arg(long)]
+    hierarchical: bool,
+    /// Count pixels, packets, nodes and edges (takes time)
+    #[arg(long)]
+    pub counters: bool,
+    /// Size of the image instead of the shot's
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(u32, u32)>,
+    /// Radius of the scene's own point and spot lights, in scene units
+    #[arg(long, value_name = "R")]
+    radius: Option<f64>,
+    /// Which scene of the glTF, counted from 0 [default: the file's own]
+    #[arg(long, value_name = "N")]
+    scene: Option<usize>,
+    /// Which camera of the glTF, counted from 0
+    #[arg(long, value_name = "N")]
+    camera: Option<usize>,
+}
+
+impl ShotArgs {
+    /// Loads the shot, with the flags' settings; what the flags leave open comes from `calibration`.
+    pub fn load(&self, calibration: &Calibration) -> Result<Shot> {
+        let overrides = Overrides {
+            size: self.size,
+            radius: self.radius,
+            scene_index: self.scene,
+            camera_index: self.camera,
+        };
+        // Flags are cheaper to check than scenes to load.
+        let settings = self.settings(calibration);
+        settings.validate()?;
+        let mut shot = Shot::load(&self.shot, &overrides)?;
+        print_notes(&shot);
+        shot.settings = settings;
+        Ok(shot)
+    }
+
+    fn settings(&self, calibration: &Calibration) -> Settings {
+        Settings {
+            technique: self.technique,
+            packet: self.packet.unwrap_or(calibration.packet),
+            leaf: self.leaf.unwrap_or(calibration.leaf),
+            mapping: self.mapping.unwrap_or(calibration.mapping),
+            split: self.split,
+            map: self.map,
+            footprint_pruning: !self.no_footprint_pruning,
+            hierarchical: self.hierarchical,
+            bias: self.bias,
+            counters: self.counters,
+        }
+    }
+}
+
+/// Where to render.
+#[derive(Debug, clap::Args)]
+pub struct DeviceArgs {
+    /// A part of the device's name [default: discrete before integrated before CPU]
+    #[arg(long, value_name = "SUBSTRING")]
+    device: Option<String>,
+    /// Run under the Vulkan validation layer; any warning or error fails the run
+    #[arg(long)]
+    pub validate: bool,
+}
+
+/// What the validation layer has said so far; readable after the device is gone.
+pub type Messages = Arc<Mutex<Vec<String>>>;
+
+impl DeviceArgs {
+    pub fn open(&self) -> Result<Arc<Gpu>> {
+        Gpu::open(&Options {
+            device: self.device.clone(),
+            validate: self.validate,
+            cache_folder: super::project_folders().map(|folders| folders.cache_dir().to_path_buf()),
+        })
+    }
+
+    /// Runs `work` on an open device, closes the device, and fails if the validation layer has said
+    /// anything until then.
+    pub fn with_device<T>(&self, work: impl FnOnce(&Arc<Gpu>) -> Result<T>) -> Result<T> {
+        let gpu = self.open()?;
+        let messages = gpu.validation_messages();
+        let result = work(&gpu);
+        drop(gpu);
+        let said = messages.lock().map(|said| said.clone()).unwrap_or_default();
+        match result {
+            Ok(_) if !said.is_empty() => Err(Error::Validation(said)),
+            result => result,
+        }
+    }
+}
