@@ -1,9 +1,13 @@
 //! How far an image of visibility is from its reference.
 
+mod picture;
+
 use serde::Serialize;
 
-use crate::image::{Plane, RgbImage};
+use crate::image::Plane;
 use crate::{Error, Result};
+
+pub use picture::{PictureMetrics, compare_pictures};
 
 /// A pixel's `facing` at or above this counts as 1: the whole light is in front of the surface.
 const WHOLLY_FACING: f32 = 1.0 - 1e-6;
@@ -16,7 +20,7 @@ pub const HEATMAP_FULL: f32 = 0.5;
 
 /// What the colours of [`heatmap`] mean, in one sentence.
 pub const HEATMAP_LEGEND: &str = "white: equal; blue: too dark; red: too bright (square-root scale, full colour at \
-     an error of 0.5); grey: no surface; green: a surface in only one of the images";
+     an error of 0.5); grey: no surface, or left out; green: a surface in only one of the images";
 
 /// Error of an image of visibility, `image − reference`. All sums are made in f64.
 ///
@@ -63,9 +67,7 @@ pub struct Metrics {
 /// When sizes differ, when a value is infinite, or when no pixel is left to compare.
 pub fn compare(image: &Plane, reference: &Plane, facing: Option<&Plane>) -> Result<Metrics> {
     check_sizes(image, reference)?;
-    if let Some(facing) = facing {
-        check_sizes(facing, reference)?;
-    }
+    facing.map_or(Ok(()), |facing| check_sizes(facing, reference))?;
     let (mut mismatched, mut left_out_by_facing) = (0, 0);
     let mut all = Errors::default();
     let mut shadow = Errors::default();
@@ -80,9 +82,7 @@ pub fn compare(image: &Plane, reference: &Plane, facing: Option<&Plane>) -> Resu
             mismatched += usize::from(value.is_nan() != truth.is_nan());
             continue;
         }
-        if facing
-            .is_some_and(|facing| facing.data[index].is_nan() || facing.data[index] < WHOLLY_FACING)
-        {
+        if left_out(facing, index) {
             left_out_by_facing += 1;
             continue;
         }
@@ -181,17 +181,26 @@ fn sizes_differ([wa, ha]: [usize; 2], [wb, hb]: [usize; 2]) -> Error {
     ))
 }
 
-/// A picture of the signed error, colours as in [`HEATMAP_LEGEND`]. The square-root scale keeps small
-/// errors in sight: 0.02 has a fifth of the full colour.
+/// A picture of the signed error, colours as in [`HEATMAP_LEGEND`]; with `facing`, what [`compare`]
+/// leaves out is grey. The square-root scale keeps small errors in sight: 0.02 has a fifth of the
+/// full colour.
 ///
 /// # Errors
 /// When the sizes differ.
-pub fn heatmap(image: &Plane, reference: &Plane) -> Result<Vec<u8>> {
+pub fn heatmap(image: &Plane, reference: &Plane, facing: Option<&Plane>) -> Result<Vec<u8>> {
     check_sizes(image, reference)?;
-    let pixels = image.data.iter().zip(&reference.data);
-    Ok(pixels
-        .flat_map(|(&value, &truth)| heat(value, truth))
-        .collect())
+    facing.map_or(Ok(()), |facing| check_sizes(facing, reference))?;
+    let color = |(index, (&value, &truth))| match left_out(facing, index) {
+        true => heat(f32::NAN, f32::NAN),
+        false => heat(value, truth),
+    };
+    let pixels = image.data.iter().zip(&reference.data).enumerate();
+    Ok(pixels.flat_map(color).collect())
+}
+
+/// Whether the surface in a pixel does not face the whole light, or is none.
+fn left_out(facing: Option<&Plane>, index: usize) -> bool {
+    facing.is_some_and(|facing| facing.data[index].is_nan() || facing.data[index] < WHOLLY_FACING)
 }
 
 /// The colour of one pixel. The ramps are ColorBrewer's RdBu (safe for the colour-blind) with white
@@ -216,58 +225,6 @@ fn heat(value: f32, truth: f32) -> [u8; 3] {
     };
     let mix = |c: usize| ramp[from][c] + (ramp[from + 1][c] - ramp[from][c]) * share;
     [mix(0), mix(1), mix(2)].map(|v| v.round() as u8)
-}
-
-/// Error between two pictures for looking at.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PictureMetrics {
-    pub pixels: usize,
-    /// [0, 1] Mean FLIP: the difference that an observer notices when the two pictures alternate, at 67
-    /// pixels per degree (a 0.7 m wide 4K monitor seen from 0.7 m) [Andersson20].
-    pub flip: f64,
-    /// [0, 1] Root of the mean squared difference over all channels of the stored (sRGB) values / 255.
-    pub rmse: f64,
-}
-
-/// Compares two pictures by FLIP and RMSE, and returns the FLIP map in the magma colours as well.
-///
-/// # Errors
-/// When the sizes differ, or when a picture has no pixels.
-pub fn compare_pictures(
-    image: &RgbImage,
-    reference: &RgbImage,
-) -> Result<(PictureMetrics, Vec<u8>)> {
-    let size = |picture: &RgbImage| [picture.width as usize, picture.height as usize];
-    if size(image) != size(reference) {
-        return Err(sizes_differ(size(image), size(reference)));
-    }
-    let [width, height] = size(image);
-    let pixels = width * height;
-    if pixels == 0
-        || [image, reference]
-            .iter()
-            .any(|picture| picture.rgb8.len() != pixels * 3)
-    {
-        return Err(Error::Invalid(
-            "a picture without pixels cannot be compared".into(),
-        ));
-    }
-    let squares = image.rgb8.iter().zip(&reference.rgb8).map(|(&a, &b)| {
-        let difference = (f64::from(a) - f64::from(b)) / 255.0;
-        difference * difference
-    });
-    let rmse = (squares.sum::<f64>() / image.rgb8.len() as f64).sqrt();
-    let upload = |picture: &RgbImage| {
-        nv_flip::FlipImageRgb8::with_data(picture.width, picture.height, &picture.rgb8)
-    };
-    let map = nv_flip::flip(
-        upload(reference),
-        upload(image),
-        nv_flip::DEFAULT_PIXELS_PER_DEGREE,
-    );
-    let flip = map.to_vec().iter().map(|&v| f64::from(v)).sum::<f64>() / pixels as f64;
-    let colours = map.apply_color_lut(&nv_flip::magma_lut()).to_vec();
-    Ok((PictureMetrics { pixels, flip, rmse }, colours))
 }
 
 #[cfg(test)]
@@ -356,14 +313,14 @@ mod tests {
         assert!(compare(&one, &one, Some(&row(&[1.0, 1.0]))).is_err());
         assert!(compare(&row(&[f32::INFINITY]), &one, None).is_err());
         assert!(compare(&row(&[NAN]), &one, None).is_err());
-        assert!(heatmap(&one, &row(&[1.0, 1.0])).is_err());
+        assert!(heatmap(&one, &row(&[1.0, 1.0]), None).is_err());
     }
 
     #[test]
     fn the_heat_map_says_which_way_and_how_far() {
         let image = row(&[0.5, 0.0, 1.0, 0.375, NAN, NAN]);
         let reference = row(&[0.5, 1.0, 0.0, 0.5, NAN, 1.0]);
-        let map = heatmap(&image, &reference).unwrap();
+        let map = heatmap(&image, &reference, None).unwrap();
         let colours: Vec<_> = map.chunks(3).collect();
         assert_eq!(colours[0], [255, 255, 255]);
         assert_eq!(colours[1], [5, 48, 97]);
@@ -372,27 +329,9 @@ mod tests {
         assert_eq!(colours[3], [103, 169, 207]);
         assert_eq!(colours[4], [128, 128, 128]);
         assert_eq!(colours[5], [0, 150, 60]);
-    }
-
-    #[test]
-    fn pictures() {
-        let picture = |value: u8| RgbImage {
-            width: 16,
-            height: 16,
-            rgb8: vec![value; 16 * 16 * 3],
-        };
-        let (same, map) = compare_pictures(&picture(90), &picture(90)).unwrap();
-        assert_eq!((same.pixels, same.rmse), (256, 0.0));
-        assert!(same.flip < 1e-6, "{}", same.flip);
-        assert_eq!(map.len(), 256 * 3);
-        let (opposite, _) = compare_pictures(&picture(0), &picture(255)).unwrap();
-        assert_eq!(opposite.rmse, 1.0);
-        assert!(opposite.flip > 0.9, "{}", opposite.flip);
-        let narrow = RgbImage {
-            width: 8,
-            height: 32,
-            rgb8: vec![0; 16 * 16 * 3],
-        };
-        assert!(compare_pictures(&picture(0), &narrow).is_err());
+        let facing = row(&[1.0, 0.5, 1.0, 1.0, NAN, 1.0]);
+        let masked = heatmap(&image, &reference, Some(&facing)).unwrap();
+        assert_eq!(masked[3..6], [128; 3]);
+        assert_eq!(masked[6..12], map[6..12]);
     }
 }

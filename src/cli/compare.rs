@@ -61,7 +61,7 @@ fn run_planes(args: &Args) -> Result<()> {
     let reference = take_channel(&args.reference, channels, args.channel.as_deref())?;
     let metrics = compare(&image, &reference, facing.as_ref())?;
     if let Some(path) = &args.heatmap {
-        let rgb8 = heatmap(&image, &reference)?;
+        let rgb8 = heatmap(&image, &reference, facing.as_ref())?;
         write_png(path, image.width as u32, image.height as u32, &rgb8)?;
     }
     match args.json {

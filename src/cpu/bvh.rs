@@ -109,7 +109,7 @@ impl Bvh {
     pub fn new(scene: &Scene) -> Result<Self> {
         let (low, high) = scene.bounds();
         let reach = low.abs().max(high.abs()).max_element();
-        if !(reach <= MAX_COORDINATE) {
+        if reach.is_nan() || reach > MAX_COORDINATE {
             return Err(Error::Invalid("the scene is too large to be traced".into()));
         }
         let corners: Vec<_> = (0..scene.triangles.len())

@@ -2,193 +2,21 @@
 //! of the size that the image itself states, not merely be small.
 #![cfg(feature = "cli")]
 
+mod stage;
+mod statistics;
+
 use std::f64::consts::PI;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{DVec3, Vec2, Vec3, Vec4};
-use halfshade::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
-use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene, Texture, Wrap};
-use halfshade::shot::{Leaf, Mapping, Settings, Shot, Technique};
+use glam::DVec3;
+use halfshade::cpu::reference::{ReferenceOptions, trace};
+use halfshade::scene::{LightShape, Material, Scene, Texture, Wrap};
+use halfshade::shot::Shot;
 
-/// [scene units] Heights above the floor: of the occluder and of the light.
-const OCCLUDER: f64 = 1.0;
-const LIGHT: f64 = 2.0;
-/// [scene units] Where the camera looks straight down from, below the occluder.
-const EYE: DVec3 = DVec3::new(0.1, 0.8, 0.05);
-const SIZE: (u32, u32) = (56, 40);
-const VFOV_DEG: f64 = 90.0;
-
-/// A rectangle parallel to the floor: two triangles seen from above, `low` and `high` its corners.
-fn plate(scene: &mut Scene, material: Material, height: f64, low: [f64; 2], high: [f64; 2]) {
-    let first = scene.positions.len() as u32;
-    for (x, z, uv) in [
-        (low[0], low[1], Vec2::ZERO),
-        (high[0], low[1], Vec2::X),
-        (low[0], high[1], Vec2::Y),
-        (high[0], high[1], Vec2::ONE),
-    ] {
-        scene
-            .positions
-            .push(Vec3::new(x as f32, height as f32, z as f32));
-        scene.texcoords.push(uv);
-    }
-    let masked = material.alpha_cutoff.is_some();
-    for triangle in [[0, 2, 1], [1, 2, 3]] {
-        scene.triangles.push(triangle.map(|i: u32| first + i));
-        scene.triangle_materials.push(scene.materials.len() as u32);
-        scene.opaque_count += usize::from(!masked);
-    }
-    scene.materials.push(material);
-}
-
-fn grey() -> Material {
-    Material {
-        name: String::new(),
-        base_color: Vec4::ONE,
-        texture: None,
-        alpha_cutoff: None,
-        double_sided: false,
-    }
-}
-
-fn floor() -> Scene {
-    let mut scene = Scene::default();
-    plate(&mut scene, grey(), 0.0, [-10.0; 2], [10.0; 2]);
-    scene
-}
-
-/// Parallel to the floor, shining down.
-fn rect(u: f64, v: f64) -> LightShape {
-    LightShape::Rect {
-        u: DVec3::X * u,
-        v: DVec3::Z * v,
-    }
-}
-
-/// The scene moved to `origin` with a light above its middle and the camera under the occluder.
-fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
-    scene.origin = origin;
-    let light = AreaLight {
-        name: String::new(),
-        center: origin + DVec3::Y * LIGHT,
-        shape,
-        color: Vec3::ONE,
-        intensity: None,
-    };
-    let camera = Camera {
-        name: String::new(),
-        eye: origin + EYE,
-        target: origin + EYE - DVec3::Y,
-        up: -DVec3::Z,
-        vfov_deg: VFOV_DEG,
-        aspect: None,
-    };
-    let settings = Settings {
-        technique: Technique::PacketContour,
-        packet: (4, 4),
-        leaf: Leaf::PerPixel,
-        mapping: Mapping::Serial,
-        split: 1,
-        map: 512,
-        footprint_pruning: true,
-        hierarchical: true,
-        bias: 1.5,
-        counters: false,
-    };
-    let (width, height) = SIZE;
-    let (scene, lights, notes) = (Arc::new(scene), vec![light], vec![]);
-    Shot {
-        scene,
-        camera,
-        width,
-        height,
-        lights,
-        settings,
-        notes,
-    }
-}
-
-fn traced(shot: &Shot, samples: u32) -> ReferenceImage {
-    let options = ReferenceOptions { samples, seed: 7 };
-    trace(shot, 0, options, &|_| {}, &AtomicBool::new(false)).unwrap()
-}
-
-/// Every pixel's index and the floor point (x, z) in its centre.
-fn floor_points() -> impl Iterator<Item = (usize, f64, f64)> {
-    let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
-    let reach = EYE.y * (VFOV_DEG.to_radians() / 2.0).tan();
-    (0..width * height).map(move |index| {
-        let along = |i: usize, n: usize| (i as f64 + 0.5) / n as f64 * 2.0 - 1.0;
-        let aspect = width as f64 / height as f64;
-        let x = EYE.x + along(index % width, width) * reach * aspect;
-        (index, x, EYE.z + along(index / width, height) * reach)
-    })
-}
-
-/// How the traced image deviates from a closed form, in standard deviations.
-struct Deviation {
-    /// Of the sum of all errors: is the image biased?
-    bias: f64,
-    /// Of the sum of (error² − stated variance): is the stated standard error right?
-    spread: f64,
-    penumbra: usize,
-}
-
-fn deviation(image: &ReferenceImage, truth: impl Fn(f64, f64) -> f64) -> Deviation {
-    let (mut sum, mut variance, mut excess, mut excess_squares, mut penumbra) =
-        (0.0, 0.0, 0.0, 0.0, 0);
-    for (index, x, z) in floor_points() {
-        let expected = truth(x, z);
-        let value = f64::from(image.visibility.data[index]);
-        let stated = f64::from(image.standard_error.data[index]).powi(2);
-        let error = value - expected;
-        // Umbra and light need no statistics (within rounding of the closed form at their borders).
-        if !(1e-6..=1.0 - 1e-6).contains(&expected) {
-            assert!(
-                error.abs() < 1e-6 && stated == 0.0,
-                "{value} is not {expected} at ({x}, {z})"
-            );
-            continue;
-        }
-        penumbra += 1;
-        sum += error;
-        variance += stated;
-        excess += error * error - stated;
-        excess_squares += (error * error - stated).powi(2);
-    }
-    Deviation {
-        bias: sum / variance.sqrt(),
-        spread: excess / excess_squares.sqrt(),
-        penumbra,
-    }
-}
-
-#[track_caller]
-fn assert_agrees(image: &ReferenceImage, truth: impl Fn(f64, f64) -> f64) {
-    let found = deviation(image, &truth);
-    assert!(
-        found.penumbra > 400,
-        "only {} pixels are in penumbra",
-        found.penumbra
-    );
-    assert!(
-        found.bias.abs() < 4.0,
-        "biased by {:.1} standard deviations",
-        found.bias
-    );
-    assert!(
-        found.spread.abs() < 4.0,
-        "the stated error is off by {:.1} standard deviations",
-        found.spread
-    );
-    // The test has teeth: it would notice a light that is wrong by half a per cent.
-    let wrong = |x: f64, z: f64| match truth(x, z) {
-        v if (1e-6..=1.0 - 1e-6).contains(&v) => (v + 0.005).min(1.0 - 2e-6),
-        v => v,
-    };
-    assert!(deviation(image, wrong).bias.abs() > 10.0);
-}
+use stage::{
+    EYE, LIGHT, OCCLUDER, SIZE, floor, floor_points, grey, half_plane, plate, rect, shot, traced,
+};
+use statistics::assert_agrees;
 
 /// Where the line from the floor at `x` through an occluder's edge at `edge` meets the light's plane.
 fn projected(x: f64, edge: f64) -> f64 {
@@ -198,19 +26,6 @@ fn projected(x: f64, edge: f64) -> f64 {
 /// The length that two intervals share.
 fn overlap(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[1].min(b[1]) - a[0].max(b[0])).max(0.0)
-}
-
-/// An occluder that covers all x below `edge`, as far as any ray of these tests can tell.
-fn half_plane(edge: f64) -> Scene {
-    let mut scene = floor();
-    plate(
-        &mut scene,
-        grey(),
-        OCCLUDER,
-        [-100.0, -100.0],
-        [edge, 100.0],
-    );
-    scene
 }
 
 #[test]
