@@ -23,9 +23,15 @@ fn main() {
         let words = compile(&path, &header, OptimizationLevel::Performance);
         // The optimizer strips the names that the recorder binds by.
         let named = compile(&path, &header, OptimizationLevel::Zero);
-        let file = path.file_name().and_then(|name| name.to_str()).expect("a UTF-8 name");
-        fs::write(out.join(format!("{file}.spv")), bytemuck::cast_slice::<u32, u8>(&words))
-            .expect("OUT_DIR is writable");
+        let file = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .expect("a UTF-8 name");
+        fs::write(
+            out.join(format!("{file}.spv")),
+            bytemuck::cast_slice::<u32, u8>(&words),
+        )
+        .expect("OUT_DIR is writable");
         writeln!(
             table,
             "Shader {{ name: {file:?}, words: words!(\"{file}.spv\"), bindings: &[{}] }},",
@@ -62,8 +68,13 @@ fn shared_header() -> String {
     for layout in shared::LAYOUTS {
         writeln!(text, "struct {} {{", layout.name).expect("writing to a string");
         for field in layout.fields {
-            let array = if field.count > 0 { format!("[{}]", field.count) } else { String::new() };
-            writeln!(text, "    {} {}{array};", field.glsl, field.name).expect("writing to a string");
+            let array = if field.count > 0 {
+                format!("[{}]", field.count)
+            } else {
+                String::new()
+            };
+            writeln!(text, "    {} {}{array};", field.glsl, field.name)
+                .expect("writing to a string");
         }
         text.push_str("};\n");
     }
@@ -87,18 +98,24 @@ fn compile(path: &Path, header: &str, level: OptimizationLevel) -> Vec<u32> {
         let content = if name == SHARED_HEADER {
             header.to_owned()
         } else {
-            fs::read_to_string(Path::new("glsl/lib").join(name)).map_err(|e| format!("{name}: {e}"))?
+            fs::read_to_string(Path::new("glsl/lib").join(name))
+                .map_err(|e| format!("{name}: {e}"))?
         };
-        Ok(shaderc::ResolvedInclude { resolved_name: name.to_owned(), content })
+        Ok(shaderc::ResolvedInclude {
+            resolved_name: name.to_owned(),
+            content,
+        })
     });
     let source = fs::read_to_string(path).expect("listed a moment ago");
-    let compiled = Compiler::new().expect("shaderc is there").compile_into_spirv(
-        &source,
-        kind,
-        &path.display().to_string(),
-        "main",
-        Some(&options),
-    );
+    let compiled = Compiler::new()
+        .expect("shaderc is there")
+        .compile_into_spirv(
+            &source,
+            kind,
+            &path.display().to_string(),
+            "main",
+            Some(&options),
+        );
     match compiled {
         Ok(artifact) => artifact.as_binary().to_vec(),
         Err(error) => panic!("{error}"),
@@ -111,15 +128,22 @@ fn bindings(words: &[u32], file: &str) -> String {
     let mut text = String::new();
     for decoration in &module.annotations {
         // OpDecorate %variable Binding n
-        let [Operand::IdRef(variable), Operand::Decoration(Decoration::Binding), Operand::LiteralBit32(binding)] =
-            decoration.operands[..]
+        let [
+            Operand::IdRef(variable),
+            Operand::Decoration(Decoration::Binding),
+            Operand::LiteralBit32(binding),
+        ] = decoration.operands[..]
         else {
             continue;
         };
-        let (name, kind) = resource(&module, variable)
-            .unwrap_or_else(|| panic!("{file}: binding {binding} is nothing that the recorder binds"));
-        write!(text, "Binding {{ name: {name:?}, binding: {binding}, kind: BindingKind::{kind} }}, ")
-            .expect("writing to a string");
+        let (name, kind) = resource(&module, variable).unwrap_or_else(|| {
+            panic!("{file}: binding {binding} is nothing that the recorder binds")
+        });
+        write!(
+            text,
+            "Binding {{ name: {name:?}, binding: {binding}, kind: BindingKind::{kind} }}, "
+        )
+        .expect("writing to a string");
     }
     text
 }
@@ -127,9 +151,14 @@ fn bindings(words: &[u32], file: &str) -> String {
 /// Name and kind of a resource variable; an anonymous block goes by the name of its member.
 fn resource(module: &Module, variable: u32) -> Option<(&str, &'static str)> {
     let pointer = definition(module, definition(module, variable)?.result_type?)?;
-    let ty = pointer.operands.iter().find_map(|operand| operand.id_ref_any())?;
+    let ty = pointer
+        .operands
+        .iter()
+        .find_map(|operand| operand.id_ref_any())?;
     match definition(module, ty)? {
-        block if block.class.opcode == Op::TypeStruct => Some((member_name(module, ty)?, "StorageBuffer")),
+        block if block.class.opcode == Op::TypeStruct => {
+            Some((member_name(module, ty)?, "StorageBuffer"))
+        }
         // Operand 5 of OpTypeImage is 1 for sampled and 2 for storage images.
         image if image.class.opcode == Op::TypeImage => {
             let kind = match image.operands[5] {
@@ -143,22 +172,35 @@ fn resource(module: &Module, variable: u32) -> Option<(&str, &'static str)> {
 }
 
 fn definition(module: &Module, id: u32) -> Option<&Instruction> {
-    module.types_global_values.iter().find(|instruction| instruction.result_id == Some(id))
+    module
+        .types_global_values
+        .iter()
+        .find(|instruction| instruction.result_id == Some(id))
 }
 
 fn variable_name(module: &Module, id: u32) -> Option<&str> {
-    module.debug_names.iter().find_map(|instruction| match &instruction.operands[..] {
-        [Operand::IdRef(target), Operand::LiteralString(name)] if *target == id => Some(name.as_str()),
-        _ => None,
-    })
+    module
+        .debug_names
+        .iter()
+        .find_map(|instruction| match &instruction.operands[..] {
+            [Operand::IdRef(target), Operand::LiteralString(name)] if *target == id => {
+                Some(name.as_str())
+            }
+            _ => None,
+        })
 }
 
 /// The name of a block's first member.
 fn member_name(module: &Module, id: u32) -> Option<&str> {
-    module.debug_names.iter().find_map(|instruction| match &instruction.operands[..] {
-        [Operand::IdRef(target), Operand::LiteralBit32(0), Operand::LiteralString(name)] if *target == id => {
-            Some(name.as_str())
-        }
-        _ => None,
-    })
+    module
+        .debug_names
+        .iter()
+        .find_map(|instruction| match &instruction.operands[..] {
+            [
+                Operand::IdRef(target),
+                Operand::LiteralBit32(0),
+                Operand::LiteralString(name),
+            ] if *target == id => Some(name.as_str()),
+            _ => None,
+        })
 }

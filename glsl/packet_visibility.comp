@@ -15,7 +15,7 @@ layout(local_size_x = GROUP_SIZE) in;
 
 layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
 layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
+layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
 layout(binding = 3) uniform texture2D position_world;
 layout(binding = 4) uniform texture2D normal_world;
 layout(binding = 5) uniform texture2D shadow_map;
@@ -31,22 +31,31 @@ layout(binding = 13, scalar) buffer ListsBlock { Lists lists[]; };
 #include "radial.glsl"
 
 const uint PIXELS_PER_PACKET = PACKET_WIDTH * PACKET_HEIGHT;
-uint held_count = 0u;
-uint held_pixel[HELD];
+// Pixels that are integrated without a loop.
+const uint BATCH = HELD < 16u ? HELD : 16u;
+
+// The pixels that this invocation integrates; those that are no penumbra pixels are not held.
+bool is_held[HELD];
+uint pixel_index[HELD];
 Receiver held[HELD];
 float beyond[HELD];
 
+// Back-projection scale of a map that is parallel to the light, which all receivers share.
+vec2 kappa;
+
+// Turns of loops so far.
+uint steps = 0u;
 uint nodes_visited = 0u;
 uint edges_extracted = 0u;
 
-void hold(View view, Fit fit, uint index) {
+void hold(View view, Fit fit, uint slot, uint index) {
     ivec2 pixel = ivec2(index % frame.size.x, index / frame.size.x);
     vec3 to_point = texelFetch(position_world, pixel, 0).xyz - view.center;
     vec3 normal = texelFetch(normal_world, pixel, 0).xyz;
-    held_pixel[held_count] = index;
-    held[held_count] = project(view, fit, to_point, normal);
-    beyond[held_count] = 0.0;
-    ++held_count;
+    is_held[slot] = true;
+    pixel_index[slot] = index;
+    held[slot] = project(view, fit, to_point, normal);
+    beyond[slot] = 0.0;
 }
 
 // Whether pixel `i` of the packet is to be integrated, and its index.
@@ -71,7 +80,7 @@ bool misses_light(View view, Packet packet, ivec2 node, int side, float depth_ma
     vec2 lower = vec2(node);
     vec2 upper = vec2(node + side);
     if (!OBLIQUE) {
-        vec2 reach = (depth_max - packet.depth_far) / vec2(held[0].ku.x, held[0].kv.y);
+        vec2 reach = (depth_max - packet.depth_far) / kappa;
         return any(greaterThan(lower, packet.centers.zw + reach * view.extent.zw))
             || any(lessThan(upper, packet.centers.xy + reach * view.extent.xy));
     }
@@ -86,69 +95,103 @@ bool misses_light(View view, Packet packet, ivec2 node, int side, float depth_ma
     return x.x > w * view.extent.z || x.y < w * view.extent.x || y.x > w * view.extent.w || y.y < w * view.extent.y;
 }
 
-// Extracts and integrates the contour of one cell. False: the pixels disagree about it and the leaf
-// rule is to reprocess.
-bool extract(View view, Packet packet, ivec2 cell) {
-    vec4 depths = samples_of(shadow_map, cell);
-    uint mask = mask_of(depths, packet.depth_max);
-    bool shared_mask = PIXELWISE || mask == mask_of(depths, packet.depth_min);
-    if (REPROCESS && !shared_mask) return false;
-    if (shared_mask) edges_extracted += segment_count(mask);
-    for (uint i = 0u; i < held_count; ++i) {
-        if (!shared_mask) {
-            mask = mask_of(depths, held[i].biased);
-            edges_extracted += segment_count(mask);
-        }
-        beyond[i] += cell_beyond(view, held[i], cell, depths, mask);
-    }
-    return true;
+// A walk through the quadtree below one root after the other, depth first. The stack is one integer: two
+// bits for each level between the root and the current node, which say which child it is
+// [Yang09 alg. 3].
+struct Walk {
+    ivec2 root;
+    ivec2 node;
+    int top;
+    int level;
+    uint stack;
+    bool ended;
+};
+
+// Starts at the lowest level whose node at the kernel's corner covers the kernel, as far as that level is
+// built; beyond it there are several roots.
+Walk start_of(Packet packet, int level_count) {
+    ivec2 first = unpacked(packet.first);
+    ivec2 side = unpacked(packet.last) - first + 1;
+    int top = min(level_covering(max(side.x, side.y)), level_count - 1);
+    return Walk(first, first, top, top, 0u, false);
 }
 
-// Walks the quadtree below one node, depth first. The stack is one integer: two bits for each level
-// between the root and the current node, which say which child it is [Yang09 alg. 3].
-bool walk(View view, Packet packet, ivec2 root, int top) {
-    ivec2 last = unpacked(packet.last);
-    int size = int(view.map_size);
-    ivec2 node = root;
-    int level = top;
-    uint stack = 0u;
-    for (;;) {
-        bool descend = all(lessThanEqual(node, last));
-        if (descend) {
-            vec2 bounds = mssm_fetch(mssm, node, level, size);
-            ++nodes_visited;
-            descend = bounds.y > packet.depth_min && bounds.x <= packet.depth_max
-                   && !(FOOTPRINT && misses_light(view, packet, node, 1 << level, bounds.y));
-        }
-        if (descend && level > 0) {
-            --level;
-            stack <<= 2;
-            continue;
-        }
-        if (descend && !extract(view, packet, node)) return false;
-        while ((stack & 3u) == 3u && level < top) {
-            node -= ivec2(1 << level);
-            stack >>= 2;
-            ++level;
-        }
-        if (level == top) return true;
-        ++stack;
-        // Children 0 … 3 stand at (0, 0), (1, 0), (0, 1), (1, 1).
-        node += (stack & 1u) != 0u ? ivec2(1 << level, 0) : ivec2(-(1 << level), 1 << level);
-    }
+// Goes on to the next node that is not below this one.
+void pass_by(inout Walk walk, ivec2 first, ivec2 last) {
+    // Up to the nearest ancestor that is not its parent's last child.
+    int pops = min(findLSB(~walk.stack) >> 1, walk.top - walk.level);
+    walk.node -= ivec2(((1 << pops) - 1) << walk.level);
+    walk.level += pops;
+    walk.stack = (walk.stack >> (2 * pops)) + 1u;
+    // Children 0 … 3 stand at (0, 0), (1, 0), (0, 1), (1, 1).
+    int side = 1 << walk.level;
+    walk.node += (walk.stack & 1u) != 0u ? ivec2(side, 0) : ivec2(-side, side);
+    if (walk.level < walk.top) return;
+    walk.root.x += side;
+    if (walk.root.x > last.x) walk.root = ivec2(first.x, walk.root.y + side);
+    walk.node = walk.root;
+    walk.stack = 0u;
+    walk.ended = walk.root.y > last.y;
 }
 
-// Starts at the lowest level whose node at the kernel's corner covers the kernel, as far as that
-// level is built; beyond it from several nodes.
-bool traverse(View view, Fit fit, Packet packet) {
+// Walks to the next cell with a contour and past it. False: there is none left.
+bool next_cell(View view, Packet packet, inout Walk walk, out ivec2 cell) {
     ivec2 first = unpacked(packet.first);
     ivec2 last = unpacked(packet.last);
-    ivec2 side = last - first + 1;
-    int top = min(level_covering(max(side.x, side.y)), int(fit.level_count) - 1);
-    for (int y = first.y; y <= last.y; y += 1 << top)
-        for (int x = first.x; x <= last.x; x += 1 << top)
-            if (!walk(view, packet, ivec2(x, y), top)) return false;
+    int size = int(view.map_size);
+    bool found = false;
+    while (!found && !walk.ended && steps < STEPS_MAX) {
+        ++steps;
+        vec2 bounds = mssm_fetch(mssm, walk.node, walk.level, size);
+        bool inside = all(lessThanEqual(walk.node, last));
+        bool descend = inside && bounds.y > packet.depth_min && bounds.x <= packet.depth_max
+                    && !(FOOTPRINT && misses_light(view, packet, walk.node, 1 << walk.level, bounds.y));
+        nodes_visited += uint(inside);
+        found = descend && walk.level == 0;
+        if (found) cell = walk.node;
+        if (descend && !found) {
+            --walk.level;
+            walk.stack <<= 2;
+        } else {
+            pass_by(walk, first, last);
+        }
+    }
+    return found;
+}
+
+// Integrates the contour of one cell for each pixel. False: the pixels disagree about it and the leaf rule
+// is to reprocess.
+bool integrate(View view, Packet packet, ivec2 cell) {
+    vec4 depths = samples_of(shadow_map, cell);
+    uint mask = mask_of(depths, packet.depth_max);
+    bool agreed = PIXELWISE || mask == mask_of(depths, packet.depth_min);
+    if (REPROCESS && !agreed) return false;
+    if (agreed) edges_extracted += segment_count(mask);
+    for (uint batch = 0u; batch < HELD; batch += BATCH) {
+        [[unroll]] for (uint k = 0u; k < BATCH; ++k) {
+            uint i = batch + k;
+            if (i < HELD && is_held[i]) {
+                uint own = mask_of(depths, held[i].biased);
+                if (!agreed) edges_extracted += segment_count(own);
+                beyond[i] += cell_beyond(view, held[i], cell, depths, own);
+            }
+        }
+    }
     return true;
+}
+
+// The loops are nested so that invocations side by side integrate together and walk together.
+// False: to be reprocessed.
+bool traverse(View view, Fit fit, Packet packet) {
+    Walk walk = start_of(packet, int(fit.level_count));
+    bool agreed = true;
+    while (agreed && !walk.ended && steps < STEPS_MAX) {
+        ++steps;
+        ivec2 cell = ivec2(0);
+        if (next_cell(view, packet, walk, cell)) agreed = integrate(view, packet, cell);
+    }
+    if (agreed && !walk.ended) atomicAdd(fits[push.index].unfinished, 1u);
+    return agreed;
 }
 
 void count(bool finished) {
@@ -162,6 +205,7 @@ void count(bool finished) {
 void main() {
     View view = views[push.index];
     Fit fit = fits[push.index];
+    kappa = fit.near / (fit.focal * view.half_size);
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint slot = gl_LocalInvocationID.x;
     uint lane = 0u;
@@ -176,28 +220,33 @@ void main() {
     Packet packet;
     bool speaks = true;  // for the packet, in `counters`
     if (PIXELWISE) {
-        hold(view, fit, pixels[entry]);
+        hold(view, fit, 0u, pixels[entry]);
         packet = packet_of_pixel(pixels[entry]);
     } else {
         packet = packets[entry];
-        for (uint i = 0u; i < PIXELS_PER_PACKET; ++i) {
+        if (LANES) {
             uint index;
-            if (!penumbra_pixel(packet, i, index)) continue;
-            if (!LANES || i == lane) hold(view, fit, index);
-            if (LANES && i < lane) speaks = false;
+            if (!penumbra_pixel(packet, lane, index)) return;
+            hold(view, fit, 0u, index);
+            for (uint i = 0u; i < lane; ++i) speaks = speaks && !penumbra_pixel(packet, i, index);
+        } else {
+            [[unroll]] for (uint i = 0u; i < HELD; ++i) {
+                uint index;
+                is_held[i] = false;
+                if (penumbra_pixel(packet, i, index)) hold(view, fit, i, index);
+            }
         }
-        if (held_count == 0u) return;
     }
 
     bool finished = traverse(view, fit, packet);
-    for (uint i = 0u; i < held_count; ++i) {
-        if (!finished) {
-            append_pixel(held_pixel[i]);
-            continue;
+    [[unroll]] for (uint i = 0u; i < HELD; ++i) {
+        if (is_held[i] && finished) {
+            float occluded = view.weight * occluded_share(view, held[i], shadow_map, beyond[i]);
+            if (ACCUMULATE) occlusion[pixel_index[i]] += occluded;
+            else occlusion[pixel_index[i]] = occluded;
+        } else if (is_held[i]) {
+            append_pixel(pixel_index[i]);
         }
-        float occluded = view.weight * occluded_share(view, held[i], shadow_map, beyond[i]);
-        if (ACCUMULATE) occlusion[held_pixel[i]] += occluded;
-        else occlusion[held_pixel[i]] = occluded;
     }
     if (COUNT && speaks) count(finished);
 }

@@ -10,10 +10,12 @@ use glam::DVec3;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::{AreaLight, LightShape};
-use crate::shared::{self, FRONT_REACH, Fit, Kernel, LEVELS_MAX, Lists, Packet, SECTOR_STEPS, View};
+use crate::shared::{
+    self, FRONT_REACH, Fit, Kernel, LEVELS_MAX, Lists, Packet, SECTOR_STEPS, View,
+};
 use crate::shot::Shot;
-use crate::technique::{Recipe, Work};
 use crate::sub_light::{SubLight, sub_lights};
+use crate::technique::{Recipe, Work};
 use camera::Frustum;
 use survey::{Survey, survey};
 
@@ -153,7 +155,9 @@ impl Plan {
 
     fn add_light(&mut self, shot: &Shot, light: &AreaLight, found: Survey) {
         let outcome = match found {
-            Survey { receivers: false, .. } => Outcome::Dark,
+            Survey {
+                receivers: false, ..
+            } => Outcome::Dark,
             Survey { casters: false, .. } => Outcome::Unshadowed,
             _ => Outcome::Shadowed,
         };
@@ -164,10 +168,18 @@ impl Plan {
         if outcome == Outcome::Shadowed {
             let accumulate = parts.len() * faces.len() > 1;
             for part in &parts {
-                views.extend(faces.iter().map(|&face| view_plan(shot, light, part, face, &faces, accumulate)));
+                views.extend(
+                    faces
+                        .iter()
+                        .map(|&face| view_plan(shot, light, part, face, &faces, accumulate)),
+                );
             }
         }
-        let name = if light.name.is_empty() { format!("light {}", self.lights.len()) } else { light.name.clone() };
+        let name = if light.name.is_empty() {
+            format!("light {}", self.lights.len())
+        } else {
+            light.name.clone()
+        };
         self.lights.push(LightPlan {
             name,
             light: whole_light(shot, light, &parts, view_first, views.len() as u32),
@@ -190,7 +202,11 @@ impl Plan {
             )));
         }
         self.map = side;
-        if self.lights.iter().any(|light| light.needs(|recipe| recipe.mssm)) {
+        if self
+            .lights
+            .iter()
+            .any(|light| light.needs(|recipe| recipe.mssm))
+        {
             let wanted = (side - 1).ilog2() + 2;
             let level_bytes = u64::from(side) * u64::from(side) * 8;
             let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
@@ -232,7 +248,14 @@ impl Plan {
             for name in ["receivers", "casters", "fit", "shadow_map"] {
                 add(name, drawn);
             }
-            add("mssm", if light.recipe.mssm { drawn * self.levels } else { 0 });
+            add(
+                "mssm",
+                if light.recipe.mssm {
+                    drawn * self.levels
+                } else {
+                    0
+                },
+            );
             for stage in &light.recipe.stages {
                 add(stage.name, count);
             }
@@ -252,16 +275,30 @@ impl Plan {
         let triangles = scene.triangles.len() as u64;
         let textured = u64::from(self.textured);
         let per_pixel = |needed: bool, bytes: usize| if needed { pixels * bytes as u64 } else { 0 };
-        let texels: usize = scene.textures.iter().map(|texture| texture.rgba.len()).sum();
+        let texels: usize = scene
+            .textures
+            .iter()
+            .map(|texture| texture.rgba.len())
+            .sum();
         let grid = u64::from(self.size.0.div_ceil(shot.settings.packet.0))
             * u64::from(self.size.1.div_ceil(shot.settings.packet.1));
         self.resources = vec![
             ("positions", scene.positions.len() as u64 * 12),
             ("triangles", triangles * 12),
             ("triangle_surfaces", triangles * 4),
-            ("surfaces", scene.materials.len() as u64 * size_of::<shared::Surface>() as u64),
+            (
+                "surfaces",
+                scene.materials.len() as u64 * size_of::<shared::Surface>() as u64,
+            ),
             ("texcoords", textured * scene.texcoords.len() as u64 * 8),
-            ("vertex_surfaces", if self.masked { scene.positions.len() as u64 * 4 } else { 0 }),
+            (
+                "vertex_surfaces",
+                if self.masked {
+                    scene.positions.len() as u64 * 4
+                } else {
+                    0
+                },
+            ),
             ("texels", textured * texels as u64),
             ("camera_depth", pixels * 4),
             ("position_world", pixels * 16),
@@ -270,9 +307,22 @@ impl Plan {
             ("caster_indices", if views > 0 { triangles * 12 } else { 0 }),
             ("shadow_map", map * 4),
             ("mssm", map * 8 * u64::from(self.levels)),
-            ("kernels", per_pixel(any(|recipe| recipe.mssm), size_of::<Kernel>())),
-            ("packets", if any(|recipe| recipe.has(Work::PacketList)) { grid * size_of::<Packet>() as u64 } else { 0 }),
-            ("pixels", per_pixel(any(|recipe| recipe.has(Work::PixelList)), 4)),
+            (
+                "kernels",
+                per_pixel(any(|recipe| recipe.mssm), size_of::<Kernel>()),
+            ),
+            (
+                "packets",
+                if any(|recipe| recipe.has(Work::PacketList)) {
+                    grid * size_of::<Packet>() as u64
+                } else {
+                    0
+                },
+            ),
+            (
+                "pixels",
+                per_pixel(any(|recipe| recipe.has(Work::PixelList)), 4),
+            ),
             ("occlusion", per_pixel(views > 0, 4)),
             ("views", views * size_of::<View>() as u64),
             ("fits", views * size_of::<Fit>() as u64),
@@ -302,7 +352,14 @@ impl Plan {
                 limits.image_side
             )));
         }
-        let images = ["camera_depth", "position_world", "normal_world", "albedo", "shadow_map", "mssm"];
+        let images = [
+            "camera_depth",
+            "position_world",
+            "normal_world",
+            "albedo",
+            "shadow_map",
+            "mssm",
+        ];
         for &(name, bytes) in &self.resources {
             let (limit, what) = if images.contains(&name) {
                 (limits.image_bytes, "image")
@@ -327,22 +384,35 @@ impl Plan {
     }
 
     fn omit(&mut self, what: impl Into<String>, reason: impl Into<String>) {
-        self.omissions.push(Omission { what: what.into(), reason: reason.into() });
+        self.omissions.push(Omission {
+            what: what.into(),
+            reason: reason.into(),
+        });
     }
 
     fn list_omissions(&mut self, shot: &Shot, retained: bool) {
         if !self.masked {
-            self.omit("fragment shader of the shadow maps", "no material is alpha-masked");
+            self.omit(
+                "fragment shader of the shadow maps",
+                "no material is alpha-masked",
+            );
         }
         if !self.textured {
-            let reason = if shot.scene.textures.is_empty() { "no material has a texture" } else { "only visibility is asked for" };
+            let reason = if shot.scene.textures.is_empty() {
+                "no material has a texture"
+            } else {
+                "only visibility is asked for"
+            };
             self.omit("textures and texture coordinates", reason);
         }
         if !self.outputs.picture {
             self.omit("shade", "only visibility is asked for");
         }
         if retained {
-            self.omit("receivers, casters, fit, shadow_map, mssm", "nothing that the view depends on has changed since the last frame");
+            self.omit(
+                "receivers, casters, fit, shadow_map, mssm",
+                "nothing that the view depends on has changed since the last frame",
+            );
         }
         for index in 0..self.lights.len() {
             self.omit_of_light(shot, index);
@@ -353,9 +423,17 @@ impl Plan {
         let planned = &self.lights[index];
         let name = planned.name.clone();
         match planned.outcome {
-            Outcome::Dark => return self.omit(format!("{name}: everything"), "no visible surface faces it: visibility 0"),
+            Outcome::Dark => {
+                return self.omit(
+                    format!("{name}: everything"),
+                    "no visible surface faces it: visibility 0",
+                );
+            }
             Outcome::Unshadowed => {
-                return self.omit(format!("{name}: shadow maps"), "nothing can cast a shadow on what is visible: visibility 1");
+                return self.omit(
+                    format!("{name}: shadow maps"),
+                    "nothing can cast a shadow on what is visible: visibility 1",
+                );
             }
             Outcome::Shadowed => {}
         }
@@ -364,20 +442,32 @@ impl Plan {
         let parts = planned.part_count as u32;
         let recipe = planned.recipe.clone();
         if shot.lights[index].is_point() {
-            self.omit(format!("{name}: mssm, kernels, packets"), "the light has no extent: its shadow is hard");
+            self.omit(
+                format!("{name}: mssm, kernels, packets"),
+                "the light has no extent: its shadow is hard",
+            );
         }
         if one_view {
             self.omit(format!("{name}: accumulation"), "it has a single view");
         }
         if faces == 1 {
-            self.omit(format!("{name}: side faces"), "every receiver lies within 60° of the light's axis");
+            self.omit(
+                format!("{name}: side faces"),
+                "every receiver lies within 60° of the light's axis",
+            );
         }
         let cells = shot.settings.split * shot.settings.split;
         if parts < cells && !shot.lights[index].is_point() {
-            self.omit(format!("{name}: {} sub-lights", cells - parts), "the disc's rim leaves nothing of them");
+            self.omit(
+                format!("{name}: {} sub-lights", cells - parts),
+                "the disc's rim leaves nothing of them",
+            );
         }
         if recipe.has(Work::PixelList) && !recipe.has(Work::PacketList) {
-            self.omit(format!("{name}: packet_visibility"), "a packet is a single pixel");
+            self.omit(
+                format!("{name}: packet_visibility"),
+                "a packet is a single pixel",
+            );
         }
         let wanted = (self.map.max(2) - 1).ilog2() + 2;
         if recipe.mssm && self.levels < wanted {
@@ -389,7 +479,14 @@ impl Plan {
     }
 }
 
-fn view_plan(shot: &Shot, light: &AreaLight, part: &SubLight, face: usize, faces: &[usize], accumulate: bool) -> ViewPlan {
+fn view_plan(
+    shot: &Shot,
+    light: &AreaLight,
+    part: &SubLight,
+    face: usize,
+    faces: &[usize],
+    accumulate: bool,
+) -> ViewPlan {
     let (u, v, n) = light.frame();
     // right × up = forward.
     let [right, up, forward] = match face {
@@ -400,11 +497,15 @@ fn view_plan(shot: &Shot, light: &AreaLight, part: &SubLight, face: usize, faces
         _ => [u, n, -v],
     };
     let array = |vector: DVec3| -> [f32; 3] { vector.as_vec3().into() };
-    let rim = part.rim.map_or([0.0; 3], |(center, radius)| [center.x as f32, center.y as f32, radius as f32]);
+    let rim = part.rim.map_or([0.0; 3], |(center, radius)| {
+        [center.x as f32, center.y as f32, radius as f32]
+    });
     // A light without extent has no half sizes to divide by; nothing reads them.
     let over = |axis: DVec3, half: f64| if half > 0.0 { axis / half } else { DVec3::ZERO };
     let sectors = part.rim.map(|_| part.sectors());
-    let area = sectors.as_ref().map_or(part.area as f32, |table| table[SECTOR_STEPS as usize]);
+    let area = sectors
+        .as_ref()
+        .map_or(part.area as f32, |table| table[SECTOR_STEPS as usize]);
     let view = View {
         center: array(part.center - shot.scene.origin),
         right: array(right),
@@ -414,7 +515,12 @@ fn view_plan(shot: &Shot, light: &AreaLight, part: &SubLight, face: usize, faces
         light_v: array(over(v, part.half_size.y)),
         light_n: array(n),
         half_size: part.half_size.as_vec2().into(),
-        extent: [part.extent.0.x as f32, part.extent.0.y as f32, part.extent.1.x as f32, part.extent.1.y as f32],
+        extent: [
+            part.extent.0.x as f32,
+            part.extent.0.y as f32,
+            part.extent.1.x as f32,
+            part.extent.1.y as f32,
+        ],
         rim,
         area,
         weight: area,
@@ -425,13 +531,30 @@ fn view_plan(shot: &Shot, light: &AreaLight, part: &SubLight, face: usize, faces
         bias: shot.settings.bias,
         levels_max: 0,
     };
-    ViewPlan { view, variant: Variant { round: part.rim.is_some(), oblique: face != 0, accumulate }, sectors }
+    ViewPlan {
+        view,
+        variant: Variant {
+            round: part.rim.is_some(),
+            oblique: face != 0,
+            accumulate,
+        },
+        sectors,
+    }
 }
 
-fn whole_light(shot: &Shot, light: &AreaLight, parts: &[SubLight], view_first: u32, view_count: u32) -> shared::Light {
+fn whole_light(
+    shot: &Shot,
+    light: &AreaLight,
+    parts: &[SubLight],
+    view_first: u32,
+    view_count: u32,
+) -> shared::Light {
     let (u, v, n) = light.frame();
     let half = light.half_size();
-    let weight = |part: &SubLight| part.rim.map_or(part.area as f32, |_| part.sectors()[SECTOR_STEPS as usize]);
+    let weight = |part: &SubLight| {
+        part.rim
+            .map_or(part.area as f32, |_| part.sectors()[SECTOR_STEPS as usize])
+    };
     shared::Light {
         center: (light.center - shot.scene.origin).as_vec3().into(),
         u: u.as_vec3().into(),
@@ -440,7 +563,10 @@ fn whole_light(shot: &Shot, light: &AreaLight, parts: &[SubLight], view_first: u
         half_size: [half.0 as f32, half.1 as f32],
         round: u32::from(matches!(light.shape, LightShape::Disc { .. })),
         // In the order in which the views add up, so that a fully hidden light is exactly so.
-        weight_sum: parts.iter().map(weight).fold(0.0, |sum, weight| sum + weight),
+        weight_sum: parts
+            .iter()
+            .map(weight)
+            .fold(0.0, |sum, weight| sum + weight),
         radiance: radiance(shot, light),
         view_first,
         view_count,
@@ -457,7 +583,10 @@ fn radiance(shot: &Shot, light: &AreaLight) -> [f32; 3] {
     let share = if light.is_point() {
         1.0 / square
     } else {
-        (light.area() * normal.dot(way.normalize_or(normal)).abs().max(0.1) / square / std::f64::consts::PI).min(1.0)
+        (light.area() * normal.dot(way.normalize_or(normal)).abs().max(0.1)
+            / square
+            / std::f64::consts::PI)
+            .min(1.0)
     };
     let intensity = light.intensity.unwrap_or((1.0 / share) as f32);
     (light.color * intensity).into()

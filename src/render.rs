@@ -7,21 +7,29 @@ mod view;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::{
-    Attachments, Buffer, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, ImageKind, Recorder, Resources,
-    Timings,
+    Attachments, Buffer, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, ImageKind,
+    Recorder, Resources, Timings,
 };
 use crate::plan::{Outputs, Plan, Variant, plan};
 use crate::shared::{Costs, Counters, Exposure, Fit, Push};
 use crate::shot::Shot;
+use crate::technique::Recipe;
 use view::{ViewPasses, tiles};
 
 /// Cost model [Yang09 eq. 6], Q_n = 1, as calibrated on lavapipe.
-pub const DEFAULT_COSTS: Costs = Costs { edge: 4.0, visibility: 2.0 };
+pub const DEFAULT_COSTS: Costs = Costs {
+    edge: 4.0,
+    visibility: 2.0,
+};
 
 /// Constant light from everywhere, so that umbrae are dark rather than black.
-pub const DEFAULT_EXPOSURE: Exposure = Exposure { scale: 1.0, ambient: 0.04, light_count: 0 };
+pub const DEFAULT_EXPOSURE: Exposure = Exposure {
+    scale: 1.0,
+    ambient: 0.04,
+    light_count: 0,
+};
 
 /// What a renderer is made for, beside the shot.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +47,7 @@ pub struct Renderer {
     plan: Plan,
     resources: Resources,
     gbuffer: GraphicsPass,
-    views: BTreeMap<(Variant, usize), ViewPasses>,
+    views: BTreeMap<(Variant, Recipe), ViewPasses>,
     resolve: ComputePass,
     shade: Option<ComputePass>,
     recorder: Recorder,
@@ -61,21 +69,31 @@ impl Renderer {
     /// be had.
     pub fn new(gpu: &Arc<Gpu>, shot: &Shot, options: RenderOptions) -> Result<Self> {
         let plan = plan(shot, options.outputs, &gpu.limits, false)?;
-        let exposure = Exposure { light_count: plan.lights.len() as u32, ..options.exposure };
+        let exposure = Exposure {
+            light_count: plan.lights.len() as u32,
+            ..options.exposure
+        };
         let resources = resources::create(gpu, &plan, shot, options.costs, exposure)?;
         let mut views = BTreeMap::new();
-        for (index, light) in plan.lights.iter().enumerate() {
+        for light in &plan.lights {
             for planned in &light.views {
-                let key = (planned.variant, index);
+                let key = (planned.variant, light.recipe.clone());
                 if !views.contains_key(&key) {
-                    let passes =
-                        ViewPasses::new(gpu, &plan, &shot.settings, &light.recipe, planned.variant, &resources)?;
+                    let passes = ViewPasses::new(
+                        gpu,
+                        &plan,
+                        &shot.settings,
+                        &light.recipe,
+                        planned.variant,
+                        &resources,
+                    )?;
                     views.insert(key, passes);
                 }
             }
         }
         let constants = specialization::of_frame(&plan);
-        let compute = |name: &str, shader: &str| ComputePass::new(gpu, name, shader, &constants, &resources);
+        let compute =
+            |name: &str, shader: &str| ComputePass::new(gpu, name, shader, &constants, &resources);
         let state = GraphicsState {
             vertex: "gbuffer.vert",
             fragment: Some("gbuffer.frag"),
@@ -85,7 +103,11 @@ impl Renderer {
         let mut renderer = Self {
             gbuffer: GraphicsPass::new(gpu, "gbuffer", &state, &constants, &resources)?,
             resolve: compute("resolve", "resolve.comp")?,
-            shade: options.outputs.picture.then(|| compute("shade", "shade.comp")).transpose()?,
+            shade: options
+                .outputs
+                .picture
+                .then(|| compute("shade", "shade.comp"))
+                .transpose()?,
             recorder: Recorder::new(gpu, recorded)?,
             gpu: gpu.clone(),
             shot: shot.clone(),
@@ -114,14 +136,33 @@ impl Renderer {
     }
 
     /// Renders a frame and waits for it.
+    ///
+    /// # Errors
+    /// A Vulkan call failed, or the driver ended a traversal before it was finished.
     pub fn render(&mut self) -> Result<Frame> {
         self.recorder.begin()?;
         self.record()?;
         let timings = self.recorder.submit_and_wait()?;
+        self.check_finished()?;
         let plan = self.plan.clone();
         self.retained = true;
         self.plan = crate::plan::plan(&self.shot, self.options.outputs, &self.gpu.limits, true)?;
         Ok(Frame { timings, plan })
+    }
+
+    /// A kernel can be larger than the driver lets a loop run; then the picture is wrong.
+    fn check_finished(&self) -> Result<()> {
+        let unfinished: u64 = self
+            .fits()?
+            .iter()
+            .map(|fit| u64::from(fit.unfinished))
+            .sum();
+        if unfinished == 0 {
+            return Ok(());
+        }
+        Err(Error::Unsupported(format!(
+            "{unfinished} traversals are longer than drivers let a shader loop; choose a smaller --map or a larger --split"
+        )))
     }
 
     fn record(&mut self) -> Result<()> {
@@ -129,10 +170,18 @@ impl Renderer {
         let frame = Push::default();
         let colors = ["position_world", "normal_world", "albedo"].map(|name| resources.image(name));
         let [position, normal, albedo] = colors;
-        let attachments =
-            Attachments { colors: &[position?, normal?, albedo?], depth: resources.image("camera_depth")?, margin: 0 };
+        let attachments = Attachments {
+            colors: &[position?, normal?, albedo?],
+            depth: resources.image("camera_depth")?,
+            margin: 0,
+        };
         let vertices = 3 * (plan.frame.opaque_count + plan.frame.masked_count);
-        recorder.draw("gbuffer", frame, &attachments, &[(&self.gbuffer, Draw::Vertices(vertices))]);
+        recorder.draw(
+            "gbuffer",
+            frame,
+            &attachments,
+            &[(&self.gbuffer, Draw::Vertices(vertices))],
+        );
 
         let retained = plan.is_retained();
         if plan.views().next().is_some() {
@@ -146,13 +195,16 @@ impl Renderer {
                 recorder.clear("clear_occlusion", resources.buffer("occlusion")?);
             }
             for (view, planned) in (light.light.view_first..).zip(&light.views) {
-                let passes = &self.views[&(planned.variant, index)];
+                let passes = &self.views[&(planned.variant, light.recipe.clone())];
                 if !retained {
                     passes.record_map(recorder, plan, resources, view)?;
                 }
                 passes.record_stages(recorder, plan, resources, view)?;
             }
-            let push = Push { index: index as u32, level: 0 };
+            let push = Push {
+                index: index as u32,
+                level: 0,
+            };
             recorder.dispatch("resolve", &self.resolve, push, Groups::Direct(tiles(plan)));
         }
         if let Some(shade) = &self.shade {

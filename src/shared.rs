@@ -37,13 +37,21 @@ pub struct Layout {
 }
 
 macro_rules! field_type {
-    ($ty:ident) => { $ty };
-    ($ty:ident $count:expr) => { [$ty; $count] };
+    ($ty:ident) => {
+        $ty
+    };
+    ($ty:ident $count:expr) => {
+        [$ty; $count]
+    };
 }
 
 macro_rules! field_count {
-    () => { 0 };
-    ($count:expr) => { $count };
+    () => {
+        0
+    };
+    ($count:expr) => {
+        $count
+    };
 }
 
 macro_rules! shared {
@@ -245,6 +253,8 @@ shared! {
         level_groups: uvec3 [LEVELS_MAX as usize],
         kernel_groups: uvec3,
         classify_groups: uvec3,
+        /// [packet] Traversals that the driver ended before they were finished.
+        unfinished: uint,
     }
 
     /// Lengths of a view's lists and the dispatches that work them off. All zero at the start of a frame.

@@ -31,7 +31,8 @@ pub fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {
     cells
         .filter_map(|(column, row)| {
             // [half sizes of the part] The cell's centre, seen from the light's.
-            let cell = DVec2::new(f64::from(2 * column + 1), f64::from(2 * row + 1)) - f64::from(split);
+            let cell =
+                DVec2::new(f64::from(2 * column + 1), f64::from(2 * row + 1)) - f64::from(split);
             let shape = match light.shape {
                 LightShape::Rect { .. } => Some((DVec2::ZERO, None)),
                 LightShape::Disc { .. } => cut_by_disc(cell, f64::from(split)),
@@ -63,7 +64,9 @@ fn cut_by_disc(cell: DVec2, radius: f64) -> Option<(DVec2, Option<(DVec2, f64)>)
     const SAMPLES: u32 = 64;
     let (mut sum, mut count) = (DVec2::ZERO, 0);
     for i in 0..SAMPLES * SAMPLES {
-        let at = (DVec2::new(f64::from(i % SAMPLES), f64::from(i / SAMPLES)) + 0.5) * (2.0 / f64::from(SAMPLES)) - 1.0;
+        let at = (DVec2::new(f64::from(i % SAMPLES), f64::from(i / SAMPLES)) + 0.5)
+            * (2.0 / f64::from(SAMPLES))
+            - 1.0;
         if (cell + at).length() < radius {
             sum += at;
             count += 1;
@@ -88,7 +91,9 @@ impl SubLight {
             for substep in 0..SUBSTEPS {
                 let from = f64::from(entry * SUBSTEPS + substep) * step;
                 // Simpson's rule on ½ ρ² dθ.
-                swept += (self.density(from) + 4.0 * self.density(from + 0.5 * step) + self.density(from + step))
+                swept += (self.density(from)
+                    + 4.0 * self.density(from + 0.5 * step)
+                    + self.density(from + step))
                     * step
                     / 6.0;
             }
@@ -109,7 +114,11 @@ impl SubLight {
         let mut reach = f64::INFINITY;
         for axis in 0..2 {
             if direction[axis] != 0.0 {
-                let side = if direction[axis] > 0.0 { upper[axis] } else { lower[axis] };
+                let side = if direction[axis] > 0.0 {
+                    upper[axis]
+                } else {
+                    lower[axis]
+                };
                 reach = reach.min(side / direction[axis]);
             }
         }
@@ -144,7 +153,10 @@ mod tests {
         AreaLight {
             name: String::new(),
             center: DVec3::new(1.0, 2.0, 3.0),
-            shape: LightShape::Disc { normal: DVec3::NEG_Y, radius },
+            shape: LightShape::Disc {
+                normal: DVec3::NEG_Y,
+                radius,
+            },
             color: Vec3::ONE,
             intensity: None,
         }
@@ -154,9 +166,15 @@ mod tests {
     fn parts_of_a_disc_add_up_to_it() {
         for split in 1..=16 {
             let parts = sub_lights(&disc(0.5), split);
-            let area: f64 = parts.iter().map(|p| p.area * p.half_size.x * p.half_size.y).sum();
+            let area: f64 = parts
+                .iter()
+                .map(|p| p.area * p.half_size.x * p.half_size.y)
+                .sum();
             // The sector tables are f32 and Simpson's rule meets kinks: 1e-6 of the whole.
-            assert!((area - std::f64::consts::PI * 0.25).abs() < 1e-6, "split {split}: {area}");
+            assert!(
+                (area - std::f64::consts::PI * 0.25).abs() < 1e-6,
+                "split {split}: {area}"
+            );
         }
     }
 
@@ -167,7 +185,11 @@ mod tests {
         for (i, swept) in table.iter().enumerate() {
             let parameter = 8.0 * i as f64 / f64::from(SECTOR_STEPS);
             let q = direction(parameter);
-            let angle = if i as u32 == SECTOR_STEPS { std::f64::consts::TAU } else { q.y.atan2(q.x).rem_euclid(std::f64::consts::TAU) };
+            let angle = if i as u32 == SECTOR_STEPS {
+                std::f64::consts::TAU
+            } else {
+                q.y.atan2(q.x).rem_euclid(std::f64::consts::TAU)
+            };
             assert!((f64::from(*swept) - 0.5 * angle).abs() < 1e-6);
         }
     }

@@ -9,7 +9,7 @@ mod pixel_contour;
 use crate::shot::{Settings, Technique};
 
 /// One dispatch in every view.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Stage {
     /// Name in plans, labels, timings and tables; a stage that integrates visibility says so.
     pub name: &'static str,
@@ -19,7 +19,7 @@ pub struct Stage {
 }
 
 /// What a stage is dispatched over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Work {
     /// Every pixel.
     Pixels,
@@ -34,7 +34,7 @@ pub enum Work {
 }
 
 /// A technique with its settings, as what there is to run.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Recipe {
     /// Whether the stages read the MSSM.
     pub mssm: bool,
@@ -58,11 +58,22 @@ impl Recipe {
 }
 
 /// The kernels of all pixels, which back-projection techniques share [GBP06, SS07; Yang09 eq. 1].
-const KERNELS: Stage = Stage { name: "kernels", shader: "kernels.comp", work: Work::Kernels };
+const KERNELS: Stage = Stage {
+    name: "kernels",
+    shader: "kernels.comp",
+    work: Work::Kernels,
+};
 
 /// Packets and pixels to their lists [Yang09 §4.3].
-const CLASSIFY: Stage = Stage { name: "classify", shader: "classify.comp", work: Work::Packets };
+const CLASSIFY: Stage = Stage {
+    name: "classify",
+    shader: "classify.comp",
+    work: Work::Packets,
+};
 
 /// The MSSM walked pixel by pixel [Yang09 §4.2].
-const PIXELS: Stage =
-    Stage { name: "pixel_visibility", shader: "packet_visibility.comp", work: Work::PixelList };
+const PIXELS: Stage = Stage {
+    name: "pixel_visibility",
+    shader: "packet_visibility.comp",
+    work: Work::PixelList,
+};

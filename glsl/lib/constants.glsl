@@ -11,3 +11,4 @@ layout(constant_id = 7) const bool COUNT = false;       // write `counters`
 layout(constant_id = 8) const bool ACCUMULATE = false;  // the light has more than one view
 layout(constant_id = 9) const bool TEXTURED = false;    // the scene has textures and texcoords
 layout(constant_id = 10) const uint HELD = 1u;          // [pixel] integrated by one invocation
+layout(constant_id = 11) const uint STEPS_MAX = 60000u; // turns of loops that the driver allows an invocation

@@ -21,25 +21,23 @@ float turns(float a, float b, float side) {
 }
 
 // Clips the segment a→b, in homogeneous light coordinates, to the sub-light's box. False: nothing left.
+// Without early returns: some drivers make loops of them, and count.
 bool clip_to_box(vec4 extent, inout vec3 a, inout vec3 b) {
     vec4 da = vec4(a.xy - a.z * extent.xy, a.z * extent.zw - a.xy);
     vec4 db = vec4(b.xy - b.z * extent.xy, b.z * extent.zw - b.xy);
+    vec4 crossing = da / (da - db);
     float from = 0.0;
     float to = 1.0;
-    for (int i = 0; i < 4; ++i) {
-        if (da[i] < 0.0) {
-            if (!(db[i] > 0.0)) return false;
-            from = max(from, da[i] / (da[i] - db[i]));
-        } else if (db[i] < 0.0) {
-            to = min(to, da[i] / (da[i] - db[i]));
-        }
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        // Outside altogether: 2 is beyond every end. Written so that a NaN is outside.
+        if (da[i] < 0.0) from = max(from, db[i] > 0.0 ? crossing[i] : 2.0);
+        else if (db[i] < 0.0) to = min(to, crossing[i]);
     }
-    if (!(from < to)) return false;
     vec3 way = b - a;
     // A vertex inside keeps its bits: the next segment starts with the same ones.
     if (to < 1.0) b = a + to * way;
     if (from > 0.0) a = a + from * way;
-    return a.z > 0.0 && b.z > 0.0;
+    return from < to && a.z > 0.0 && b.z > 0.0;
 }
 
 // Clips the segment a→b to the disc `rim`. False: nothing left.
@@ -49,12 +47,11 @@ bool clip_to_rim(vec3 rim, inout vec2 a, inout vec2 b) {
     float square = dot(way, way);
     float along = dot(from_center, way);
     float root = along * along - square * (dot(from_center, from_center) - rim.z * rim.z);
-    if (!(root > 0.0)) return false;
-    float half_chord = sqrt(root);
+    float half_chord = sqrt(max(root, 0.0));
     float from = (-along - half_chord) / square;
     float to = (half_chord - along) / square;
-    if (!(max(from, 0.0) < min(to, 1.0))) return false;
+    bool inside = root > 0.0 && max(from, 0.0) < min(to, 1.0);
     if (to < 1.0) b = a + to * way;
     if (from > 0.0) a = a + from * way;
-    return true;
+    return inside;
 }

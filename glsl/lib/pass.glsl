@@ -1,6 +1,7 @@
 // What every pass begins with: shared structs, specialization constants, push constants.
 
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "shared.glsl"

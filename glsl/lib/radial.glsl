@@ -12,23 +12,21 @@ float sector_to(View view, float parameter) {
 // within the segment's angle. a, b: homogeneous light coordinates. side: see `turns`.
 // A segment outside the light contributes exactly 0.
 float area_beyond(View view, vec3 a, vec3 b, float side) {
-    if (!clip_to_box(ROUND ? view.extent : vec4(-1.0, -1.0, 1.0, 1.0), a, b)) return 0.0;
-    if (!ROUND) {
-        // A square's area between centre and border is ½ per unit of perimeter.
-        float from = perimeter(a.xy);
-        float to = perimeter(b.xy);
-        float doubled = (a.x * b.y - a.y * b.x) / (a.z * b.z);
-        return 0.5 * (to - from + 8.0 * turns(from, to, side) - doubled);
-    }
+    bool inside = clip_to_box(ROUND ? view.extent : vec4(-1.0, -1.0, 1.0, 1.0), a, b);
     vec2 start = a.xy / a.z;
     vec2 end = b.xy / b.z;
-    if (!clip_to_rim(view.rim, start, end)) return 0.0;
+    if (ROUND) inside = clip_to_rim(view.rim, start, end) && inside;
     float from = perimeter(start);
     float to = perimeter(end);
-    // The table starts at direction 0 while parameters of directions just below it are negative.
-    float cut = float(from < 0.0) - float(to < 0.0);
-    float sector = sector_to(view, to) - sector_to(view, from) + view.area * (turns(from, to, side) + cut);
-    return sector - 0.5 * (start.x * end.y - start.y * end.x);
+    // A square's area between centre and border is ½ per unit of perimeter.
+    float sector = 0.5 * (to - from + 8.0 * turns(from, to, side));
+    if (ROUND) {
+        // The table starts at direction 0 while parameters of directions just below it are negative.
+        float cut = float(from < 0.0) - float(to < 0.0);
+        sector = sector_to(view, to) - sector_to(view, from) + view.area * (turns(from, to, side) + cut);
+    }
+    float beyond = sector - 0.5 * (start.x * end.y - start.y * end.x);
+    return inside ? beyond : 0.0;
 }
 
 // Sum of `area_beyond` over the segments of one cell, for one receiver.
@@ -36,7 +34,8 @@ float cell_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint ma
     float beyond = 0.0;
     vec2 corner = vec2(cell);
     bool own = cell == ivec2(floor(receiver.t));
-    for (uint i = 0u; i < segment_count(mask); ++i) {
+    [[unroll]] for (uint i = 0u; i < 2u; ++i) {
+        if (i >= segment_count(mask)) break;
         uint from = start_edge(mask, i);
         uint to = end_edge(mask, i);
         vec3 a = back_project(receiver, corner + midpoint(from) - receiver.t, start_depth(depths, from));

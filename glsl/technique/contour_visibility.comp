@@ -11,7 +11,7 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
 layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
+layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
 layout(binding = 3) uniform texture2D position_world;
 layout(binding = 4) uniform texture2D normal_world;
 layout(binding = 5) uniform texture2D shadow_map;
@@ -21,22 +21,34 @@ layout(binding = 8, scalar) readonly buffer Sectors { float sectors[]; };
 layout(binding = 9, scalar) buffer CountersBlock { Counters counters; };
 #include "radial.glsl"
 
+// Turns of loops so far.
+uint steps = 0u;
 uint cells_visited = 0u;
 uint edges_extracted = 0u;
 
+// The loops are nested so that invocations side by side integrate together and look for contours together.
 float sum_beyond(View view, Receiver receiver, Kernel kernel) {
     ivec2 first = unpacked(kernel.first);
     ivec2 last = unpacked(kernel.last);
+    ivec2 cell = first;
     float beyond = 0.0;
-    for (int y = first.y; y <= last.y; ++y) {
-        for (int x = first.x; x <= last.x; ++x) {
-            vec4 depths = samples_of(shadow_map, ivec2(x, y));
-            uint mask = mask_of(depths, receiver.biased);
+    while (cell.y <= last.y && steps < STEPS_MAX) {
+        ++steps;
+        ivec2 found = cell;
+        vec4 depths = vec4(0.0);
+        uint mask = 0u;
+        while (segment_count(mask) == 0u && cell.y <= last.y && steps < STEPS_MAX) {
+            ++steps;
             ++cells_visited;
-            edges_extracted += segment_count(mask);
-            beyond += cell_beyond(view, receiver, ivec2(x, y), depths, mask);
+            found = cell;
+            depths = samples_of(shadow_map, cell);
+            mask = mask_of(depths, receiver.biased);
+            cell = cell.x < last.x ? cell + ivec2(1, 0) : ivec2(first.x, cell.y + 1);
         }
+        edges_extracted += segment_count(mask);
+        beyond += cell_beyond(view, receiver, found, depths, mask);
     }
+    if (cell.y <= last.y) atomicAdd(fits[push.index].unfinished, 1u);
     return beyond;
 }
 

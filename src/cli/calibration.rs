@@ -47,29 +47,38 @@ impl Calibration {
     /// Where a device's calibration is stored. None: the user has no home folder.
     pub fn file(device: &DeviceInfo) -> Option<PathBuf> {
         let folders = super::project_folders()?;
-        Some(folders.data_dir().join(format!("calibration-{}.json", device.uuid)))
+        Some(
+            folders
+                .data_dir()
+                .join(format!("calibration-{}.json", device.uuid)),
+        )
     }
 
     /// The stored calibration of a device, or the built-in one; a file that can't be read is reported
     /// and ignored.
     pub fn of(device: &DeviceInfo) -> Self {
-        let Some(text) = Self::file(device).and_then(|file| std::fs::read_to_string(file).ok()) else {
+        let Some(text) = Self::file(device).and_then(|file| std::fs::read_to_string(file).ok())
+        else {
             return Self::default();
         };
         serde_json::from_str(&text).unwrap_or_else(|error| {
-            eprintln!("note: the stored calibration is ignored ({error}); run `halfshade calibrate` anew");
+            eprintln!(
+                "note: the stored calibration is ignored ({error}); run `halfshade calibrate` anew"
+            );
             Self::default()
         })
     }
 
     /// Stores it for a device.
     pub fn store(&self, device: &DeviceInfo) -> Result<PathBuf> {
-        let file = Self::file(device)
-            .ok_or_else(|| Error::Unsupported("there is no home folder to store the calibration in".into()))?;
+        let file = Self::file(device).ok_or_else(|| {
+            Error::Unsupported("there is no home folder to store the calibration in".into())
+        })?;
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         }
-        let text = serde_json::to_string_pretty(self).map_err(|error| Error::Invalid(error.to_string()))?;
+        let text = serde_json::to_string_pretty(self)
+            .map_err(|error| Error::Invalid(error.to_string()))?;
         write_atomically(&file, |out| out.write_all(text.as_bytes()))?;
         Ok(file)
     }

@@ -26,7 +26,10 @@ pub fn run(args: &Args) -> Result<()> {
     for device in &devices {
         let verdict = match device.missing.is_empty() {
             true => "can run the engine".to_owned(),
-            false => format!("cannot run the engine: it lacks {}", device.missing.join(", ")),
+            false => format!(
+                "cannot run the engine: it lacks {}",
+                device.missing.join(", ")
+            ),
         };
         // Writing to a string does not fail.
         let _ = writeln!(

@@ -23,7 +23,9 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     args.device.with_device(|gpu| {
         let shot = args.shot.load(&Calibration::of(&gpu.info))?;
-        let outputs = Outputs { picture: !args.visibility_only };
+        let outputs = Outputs {
+            picture: !args.visibility_only,
+        };
         super::print(&plan(&shot, outputs, &gpu.limits, false)?.to_string())
     })
 }

@@ -1,7 +1,7 @@
 //! The flags that commands share: what to render, and on which device.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use halfshade::gpu::{Gpu, Options};
 use halfshade::shot::{Leaf, Mapping, Overrides, Settings, Shot, Technique};
@@ -103,9 +103,6 @@ pub struct DeviceArgs {
     #[arg(long)]
     pub validate: bool,
 }
-
-/// What the validation layer has said so far; readable after the device is gone.
-pub type Messages = Arc<Mutex<Vec<String>>>;
 
 impl DeviceArgs {
     pub fn open(&self) -> Result<Arc<Gpu>> {

@@ -95,7 +95,10 @@ impl Stats {
         let plan = &frames[0].0.plan;
         let sum = |frame: &Frame, name: Option<&str>| -> f64 {
             let passes = frame.timings.passes.iter();
-            passes.filter(|(pass, _)| name.is_none_or(|name| name == pass)).map(|(_, ms)| ms).sum()
+            passes
+                .filter(|(pass, _)| name.is_none_or(|name| name == pass))
+                .map(|(_, ms)| ms)
+                .sum()
         };
         let over = |name| Spread::of(frames.iter().map(|(frame, _)| sum(frame, name)).collect());
         let passes = plan.passes.iter().map(|&(name, count)| PassStats {
@@ -122,7 +125,11 @@ impl Stats {
             counters: counters.map(|after| counts(&after, &last)),
             memory_bytes,
             views: ViewStats::new(renderer)?,
-            validation_messages: gpu.validation_messages().lock().map(|said| said.len()).unwrap_or(0),
+            validation_messages: gpu
+                .validation_messages()
+                .lock()
+                .map(|said| said.len())
+                .unwrap_or(0),
         })
     }
 
@@ -148,13 +155,15 @@ impl Stats {
 impl ViewStats {
     fn new(renderer: &Renderer) -> Result<Self> {
         let fits = renderer.fits()?;
-        let triangles = |fit: &halfshade::shared::Fit| f64::from((fit.opaque_draw[0] + fit.masked_draw[0]) / 3);
+        let triangles =
+            |fit: &halfshade::shared::Fit| f64::from((fit.opaque_draw[0] + fit.masked_draw[0]) / 3);
         let with_casters = fits.iter().filter(|fit| fit.level_count > 0).count();
         Ok(Self {
             planned: fits.len(),
             with_receivers: fits.iter().filter(|fit| fit.receiver_count > 0).count(),
             with_casters,
-            caster_triangles_mean: fits.iter().map(triangles).sum::<f64>() / with_casters.max(1) as f64,
+            caster_triangles_mean: fits.iter().map(triangles).sum::<f64>()
+                / with_casters.max(1) as f64,
             mssm_levels_max: fits.iter().map(|fit| fit.level_count).max().unwrap_or(0),
         })
     }
@@ -170,9 +179,21 @@ fn counts(after: &Counters, before: &Counters) -> BTreeMap<&'static str, u64> {
         ("umbra", narrow(after.umbra, before.umbra)),
         ("penumbra", narrow(after.penumbra, before.penumbra)),
         ("packets", narrow(after.packets, before.packets)),
-        ("coherent_packets", narrow(after.coherent_packets, before.coherent_packets)),
-        ("reprocessed_packets", narrow(after.reprocessed_packets, before.reprocessed_packets)),
-        ("nodes_visited", wide(after.nodes_visited).wrapping_sub(wide(before.nodes_visited))),
-        ("edges_extracted", wide(after.edges_extracted).wrapping_sub(wide(before.edges_extracted))),
+        (
+            "coherent_packets",
+            narrow(after.coherent_packets, before.coherent_packets),
+        ),
+        (
+            "reprocessed_packets",
+            narrow(after.reprocessed_packets, before.reprocessed_packets),
+        ),
+        (
+            "nodes_visited",
+            wide(after.nodes_visited).wrapping_sub(wide(before.nodes_visited)),
+        ),
+        (
+            "edges_extracted",
+            wide(after.edges_extracted).wrapping_sub(wide(before.edges_extracted)),
+        ),
     ])
 }

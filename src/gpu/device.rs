@@ -66,38 +66,67 @@ pub struct Gpu {
 
 /// Names a failed call.
 pub(super) fn failed(call: &str) -> impl FnOnce(vk::Result) -> Error + '_ {
-    move |result| Error::Vulkan { call: call.to_owned(), result }
+    move |result| Error::Vulkan {
+        call: call.to_owned(),
+        result,
+    }
 }
 
 fn load() -> Result<ash::Entry> {
     // SAFETY: loading the system's Vulkan loader; it stays loaded while the entry lives.
-    unsafe { ash::Entry::load() }
-        .map_err(|e| Error::Unsupported(format!("no Vulkan loader ({e}): install libvulkan1 and a driver")))
+    unsafe { ash::Entry::load() }.map_err(|e| {
+        Error::Unsupported(format!(
+            "no Vulkan loader ({e}): install libvulkan1 and a driver"
+        ))
+    })
 }
 
 /// An instance, with the messenger's own creation and destruction validated too.
-fn create_instance(entry: &ash::Entry, validate: bool, messages: &Messages) -> Result<(ash::Instance, bool)> {
+fn create_instance(
+    entry: &ash::Entry,
+    validate: bool,
+    messages: &Messages,
+) -> Result<(ash::Instance, bool)> {
     // SAFETY: plain queries.
     let (layers, extensions) = unsafe {
         (
-            entry.enumerate_instance_layer_properties().map_err(failed("vkEnumerateInstanceLayerProperties"))?,
+            entry
+                .enumerate_instance_layer_properties()
+                .map_err(failed("vkEnumerateInstanceLayerProperties"))?,
             entry
                 .enumerate_instance_extension_properties(None)
                 .map_err(failed("vkEnumerateInstanceExtensionProperties"))?,
         )
     };
-    if validate && !layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER)) {
+    if validate
+        && !layers
+            .iter()
+            .any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER))
+    {
         return Err(Error::Unsupported(
             "the Khronos validation layer is not there: install vulkan-validationlayers or leave out --validate".into(),
         ));
     }
-    let debug = validate || extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME));
-    let application =
-        vk::ApplicationInfo::default().application_name(c"halfshade").api_version(vk::API_VERSION_1_3);
-    let enabled_layers = if validate { vec![VALIDATION_LAYER.as_ptr()] } else { vec![] };
-    let enabled_extensions = if debug { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+    let debug = validate
+        || extensions
+            .iter()
+            .any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME));
+    let application = vk::ApplicationInfo::default()
+        .application_name(c"halfshade")
+        .api_version(vk::API_VERSION_1_3);
+    let enabled_layers = if validate {
+        vec![VALIDATION_LAYER.as_ptr()]
+    } else {
+        vec![]
+    };
+    let enabled_extensions = if debug {
+        vec![ext::debug_utils::NAME.as_ptr()]
+    } else {
+        vec![]
+    };
     let synchronization = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
-    let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&synchronization);
+    let mut features =
+        vk::ValidationFeaturesEXT::default().enabled_validation_features(&synchronization);
     let mut messenger = validation::messenger_info(messages);
     let mut info = vk::InstanceCreateInfo::default()
         .application_info(&application)
@@ -107,18 +136,24 @@ fn create_instance(entry: &ash::Entry, validate: bool, messages: &Messages) -> R
         info = info.push_next(&mut features).push_next(&mut messenger);
     }
     // SAFETY: all that `info` points to outlives the call.
-    let instance = unsafe { entry.create_instance(&info, None) }.map_err(failed("vkCreateInstance"))?;
+    let instance =
+        unsafe { entry.create_instance(&info, None) }.map_err(failed("vkCreateInstance"))?;
     Ok((instance, debug))
 }
 
 fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut v11);
+    let mut properties = vk::PhysicalDeviceProperties2::default()
+        .push_next(&mut driver)
+        .push_next(&mut v11);
     // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
     let core = properties.properties;
-    let text = |name: Result<&CStr, _>| name.map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let text = |name: Result<&CStr, _>| {
+        name.map(|n| n.to_string_lossy().into_owned())
+            .unwrap_or_default()
+    };
     DeviceInfo {
         name: text(core.device_name_as_c_str()),
         kind: match core.device_type {
@@ -128,7 +163,11 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo 
             vk::PhysicalDeviceType::CPU => "cpu",
             _ => "other",
         },
-        driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str())),
+        driver: format!(
+            "{} {}",
+            text(driver.driver_name_as_c_str()),
+            text(driver.driver_info_as_c_str())
+        ),
         vulkan: format!(
             "{}.{}.{}",
             vk::api_version_major(core.api_version),
@@ -136,7 +175,11 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo 
             vk::api_version_patch(core.api_version)
         ),
         subgroup_size: v11.subgroup_size,
-        uuid: v11.device_uuid.iter().map(|byte| format!("{byte:02x}")).collect(),
+        uuid: v11
+            .device_uuid
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect(),
         missing: requirements::missing(instance, device),
     }
 }
@@ -147,7 +190,9 @@ pub fn list_devices() -> Result<Vec<DeviceInfo>> {
     let (instance, _) = create_instance(&entry, false, &Messages::default())?;
     // SAFETY: the instance is destroyed after its last use.
     unsafe {
-        let devices = instance.enumerate_physical_devices().map_err(failed("vkEnumeratePhysicalDevices"));
+        let devices = instance
+            .enumerate_physical_devices()
+            .map_err(failed("vkEnumeratePhysicalDevices"));
         let list = devices.map(|devices| devices.iter().map(|&d| describe(&instance, d)).collect());
         instance.destroy_instance(None);
         list
@@ -155,33 +200,54 @@ pub fn list_devices() -> Result<Vec<DeviceInfo>> {
 }
 
 /// The device that `wanted` names, or else the best one.
-fn pick(instance: &ash::Instance, wanted: Option<&str>) -> Result<(vk::PhysicalDevice, DeviceInfo)> {
+fn pick(
+    instance: &ash::Instance,
+    wanted: Option<&str>,
+) -> Result<(vk::PhysicalDevice, DeviceInfo)> {
     // SAFETY: a plain query.
-    let devices = unsafe { instance.enumerate_physical_devices() }.map_err(failed("vkEnumeratePhysicalDevices"))?;
-    let mut found: Vec<_> = devices.into_iter().map(|device| (device, describe(instance, device))).collect();
+    let devices = unsafe { instance.enumerate_physical_devices() }
+        .map_err(failed("vkEnumeratePhysicalDevices"))?;
+    let mut found: Vec<_> = devices
+        .into_iter()
+        .map(|device| (device, describe(instance, device)))
+        .collect();
     if found.is_empty() {
-        return Err(Error::Unsupported("no Vulkan device: install a driver (mesa-vulkan-drivers has lavapipe)".into()));
+        return Err(Error::Unsupported(
+            "no Vulkan device: install a driver (mesa-vulkan-drivers has lavapipe)".into(),
+        ));
     }
     let names = |list: &[(vk::PhysicalDevice, DeviceInfo)]| {
-        list.iter().map(|(_, info)| info.name.clone()).collect::<Vec<_>>().join(", ")
+        list.iter()
+            .map(|(_, info)| info.name.clone())
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     if let Some(wanted) = wanted {
         let all = names(&found);
         found.retain(|(_, info)| info.name.to_lowercase().contains(&wanted.to_lowercase()));
         if found.is_empty() {
-            return Err(Error::Unsupported(format!("no Vulkan device is called \"{wanted}\"; there are: {all}")));
+            return Err(Error::Unsupported(format!(
+                "no Vulkan device is called \"{wanted}\"; there are: {all}"
+            )));
         }
     }
     let rank = |info: &DeviceInfo| {
         let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
-        (!info.missing.is_empty(), kinds.iter().position(|&kind| kind == info.kind))
+        (
+            !info.missing.is_empty(),
+            kinds.iter().position(|&kind| kind == info.kind),
+        )
     };
     found.sort_by_key(|(_, info)| rank(info));
     let (device, info) = found.swap_remove(0);
     if info.missing.is_empty() {
         return Ok((device, info));
     }
-    Err(Error::Unsupported(format!("{} cannot run the engine: it lacks {}", info.name, info.missing.join(", "))))
+    Err(Error::Unsupported(format!(
+        "{} cannot run the engine: it lacks {}",
+        info.name,
+        info.missing.join(", ")
+    )))
 }
 
 impl Gpu {
@@ -193,13 +259,15 @@ impl Gpu {
         let guard = InstanceGuard(Some(instance));
         let instance = guard.0.as_ref().expect("taken only at the end");
         let (physical, info) = pick(instance, options.device.as_deref())?;
-        let family = requirements::queue_family(instance, physical)
-            .ok_or_else(|| Error::Unsupported("no queue family with graphics and compute".into()))?;
+        let family = requirements::queue_family(instance, physical).ok_or_else(|| {
+            Error::Unsupported("no queue family with graphics and compute".into())
+        })?;
         let messenger = if options.validate {
             let debug_instance = ext::debug_utils::Instance::new(&entry, instance);
             // SAFETY: `messages` is kept until after the instance is destroyed.
             let messenger = unsafe {
-                debug_instance.create_debug_utils_messenger(&validation::messenger_info(&messages), None)
+                debug_instance
+                    .create_debug_utils_messenger(&validation::messenger_info(&messages), None)
             }
             .map_err(failed("vkCreateDebugUtilsMessengerEXT"))?;
             Some((debug_instance, messenger))
@@ -229,8 +297,10 @@ impl Gpu {
         let debug = debug.then(|| ext::debug_utils::Device::new(instance, &device));
         // SAFETY: the family has at least one queue.
         let queue = unsafe { device.get_device_queue(family, 0) };
-        let cache_file =
-            options.cache_folder.as_ref().map(|folder| folder.join(format!("pipelines-{}.bin", info.uuid)));
+        let cache_file = options
+            .cache_folder
+            .as_ref()
+            .map(|folder| folder.join(format!("pipelines-{}.bin", info.uuid)));
         let cache = create_cache(&device, cache_file.as_deref());
         Ok(Arc::new(Self {
             _entry: entry,
@@ -264,8 +334,12 @@ impl Gpu {
 
     /// Names an object for the validation layer and for frame debuggers.
     pub(super) fn name<T: vk::Handle>(&self, object: T, name: &str) {
-        let (Some(debug), Ok(name)) = (&self.debug, CString::new(name)) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        let (Some(debug), Ok(name)) = (&self.debug, CString::new(name)) else {
+            return;
+        };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default()
+            .object_handle(object)
+            .object_name(&name);
         // SAFETY: the handle belongs to this device. A name that can't be set is no loss.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
@@ -280,7 +354,9 @@ impl Gpu {
     fn store_cache(&self) {
         let Some(file) = &self.cache_file else { return };
         // SAFETY: the cache is alive.
-        let Ok(data) = (unsafe { self.device.get_pipeline_cache_data(self.cache) }) else { return };
+        let Ok(data) = (unsafe { self.device.get_pipeline_cache_data(self.cache) }) else {
+            return;
+        };
         let Some(folder) = file.parent() else { return };
         // A cache that can't be stored is no loss: the pipelines are built again next time.
         let partial = file.with_extension(format!("{}.partial", std::process::id()));
@@ -329,9 +405,15 @@ impl Drop for InstanceGuard {
     }
 }
 
-fn create_device(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32) -> Result<ash::Device> {
+fn create_device(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    family: u32,
+) -> Result<ash::Device> {
     let mut features = Features::required();
-    let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(family)
+        .queue_priorities(&[1.0])];
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_features(&features.core)
@@ -354,17 +436,27 @@ fn create_allocator(
         buffer_device_address: false,
         allocation_sizes: Default::default(),
     })
-    .map_err(|error| Error::Memory { resource: "the allocator".into(), message: error.to_string() })
+    .map_err(|error| Error::Memory {
+        resource: "the allocator".into(),
+        message: error.to_string(),
+    })
 }
 
 /// The stored pipeline cache, or an empty one; a null handle where even that fails: it is optional.
 fn create_cache(device: &ash::Device, file: Option<&std::path::Path>) -> vk::PipelineCache {
-    let stored = file.and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
+    let stored = file
+        .and_then(|file| std::fs::read(file).ok())
+        .unwrap_or_default();
     // SAFETY: the driver checks the header of the data and ignores what is not its own.
     unsafe {
         device
-            .create_pipeline_cache(&vk::PipelineCacheCreateInfo::default().initial_data(&stored), None)
-            .or_else(|_| device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None))
+            .create_pipeline_cache(
+                &vk::PipelineCacheCreateInfo::default().initial_data(&stored),
+                None,
+            )
+            .or_else(|_| {
+                device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None)
+            })
             .unwrap_or_default()
     }
 }
@@ -377,5 +469,9 @@ fn tick_ns(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32) 
             instance.get_physical_device_queue_family_properties(physical),
         )
     };
-    if families[family as usize].timestamp_valid_bits == 0 { 0.0 } else { properties.limits.timestamp_period.into() }
+    if families[family as usize].timestamp_valid_bits == 0 {
+        0.0
+    } else {
+        properties.limits.timestamp_period.into()
+    }
 }

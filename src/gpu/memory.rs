@@ -59,11 +59,17 @@ impl ImageKind {
             Self::Vector | Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             Self::Bounds => vk::ImageUsageFlags::STORAGE,
         };
-        own | vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST
+        own | vk::ImageUsageFlags::SAMPLED
+            | vk::ImageUsageFlags::TRANSFER_SRC
+            | vk::ImageUsageFlags::TRANSFER_DST
     }
 
     pub(super) fn aspect(self) -> vk::ImageAspectFlags {
-        if self == Self::Depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
+        if self == Self::Depth {
+            vk::ImageAspectFlags::DEPTH
+        } else {
+            vk::ImageAspectFlags::COLOR
+        }
     }
 }
 
@@ -100,7 +106,12 @@ impl Buffer {
         if bytes.is_empty() {
             return Ok(buffer);
         }
-        let mut staging = Self::at(gpu, &format!("{name} (staging)"), bytes.len() as u64, MemoryLocation::CpuToGpu)?;
+        let mut staging = Self::at(
+            gpu,
+            &format!("{name} (staging)"),
+            bytes.len() as u64,
+            MemoryLocation::CpuToGpu,
+        )?;
         staging.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
         let mut recorder = Recorder::new(gpu, 0)?;
         recorder.begin()?;
@@ -122,9 +133,18 @@ impl Buffer {
         // SAFETY: `info` outlives the calls; the buffer is bound once, and destroyed by `Drop` from
         // here on.
         unsafe {
-            let raw = gpu.device.create_buffer(&info, None).map_err(failed(&format!("vkCreateBuffer of {name}")))?;
+            let raw = gpu
+                .device
+                .create_buffer(&info, None)
+                .map_err(failed(&format!("vkCreateBuffer of {name}")))?;
             gpu.name(raw, name);
-            let mut buffer = Self { gpu: gpu.clone(), name: name.into(), bytes, raw, allocation: None };
+            let mut buffer = Self {
+                gpu: gpu.clone(),
+                name: name.into(),
+                bytes,
+                raw,
+                allocation: None,
+            };
             let requirements = gpu.device.get_buffer_memory_requirements(raw);
             let allocation = allocate(gpu, name, requirements, location, true)?;
             gpu.device
@@ -136,16 +156,22 @@ impl Buffer {
     }
 
     fn mapped_mut(&mut self) -> Result<&mut [u8]> {
-        self.allocation.as_mut().and_then(|allocation| allocation.mapped_slice_mut()).ok_or_else(|| Error::Memory {
-            resource: self.name.clone(),
-            message: "the memory cannot be mapped".into(),
-        })
+        self.allocation
+            .as_mut()
+            .and_then(|allocation| allocation.mapped_slice_mut())
+            .ok_or_else(|| Error::Memory {
+                resource: self.name.clone(),
+                message: "the memory cannot be mapped".into(),
+            })
     }
 
     /// What a `readback` buffer holds, once the copy into it has finished.
     pub fn read<T: bytemuck::Pod>(&self, count: usize) -> Result<Vec<T>> {
         let bytes = count * size_of::<T>();
-        let mapped = self.allocation.as_ref().and_then(|allocation| allocation.mapped_slice());
+        let mapped = self
+            .allocation
+            .as_ref()
+            .and_then(|allocation| allocation.mapped_slice());
         match mapped.and_then(|slice| slice.get(..bytes)) {
             Some(slice) => Ok(bytemuck::pod_collect_to_vec(slice)),
             None => Err(Error::Memory {
@@ -166,11 +192,21 @@ impl Drop for Buffer {
 
 impl Image {
     /// An image on the device, of undefined content; `layers` > 1 makes it an array.
-    pub fn new(gpu: &Arc<Gpu>, name: &str, kind: ImageKind, size: (u32, u32), layers: u32) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        kind: ImageKind,
+        size: (u32, u32),
+        layers: u32,
+    ) -> Result<Self> {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(kind.format())
-            .extent(vk::Extent3D { width: size.0, height: size.1, depth: 1 })
+            .extent(vk::Extent3D {
+                width: size.0,
+                height: size.1,
+                depth: 1,
+            })
             .mip_levels(1)
             .array_layers(layers)
             .samples(vk::SampleCountFlags::TYPE_1)
@@ -179,7 +215,10 @@ impl Image {
         // SAFETY: `info` outlives the calls; the image is bound once, and destroyed by `Drop` from
         // here on.
         unsafe {
-            let raw = gpu.device.create_image(&info, None).map_err(failed(&format!("vkCreateImage of {name}")))?;
+            let raw = gpu
+                .device
+                .create_image(&info, None)
+                .map_err(failed(&format!("vkCreateImage of {name}")))?;
             gpu.name(raw, name);
             let mut image = Self {
                 gpu: gpu.clone(),
@@ -208,7 +247,11 @@ impl Image {
         let array = self.kind == ImageKind::Bounds;
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw)
-            .view_type(if array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D })
+            .view_type(if array {
+                vk::ImageViewType::TYPE_2D_ARRAY
+            } else {
+                vk::ImageViewType::TYPE_2D
+            })
             .format(self.kind.format())
             .subresource_range(self.range());
         // SAFETY: the image is alive and bound.
@@ -217,12 +260,18 @@ impl Image {
     }
 
     pub(super) fn range(&self) -> vk::ImageSubresourceRange {
-        vk::ImageSubresourceRange::default().aspect_mask(self.kind.aspect()).level_count(1).layer_count(self.layers)
+        vk::ImageSubresourceRange::default()
+            .aspect_mask(self.kind.aspect())
+            .level_count(1)
+            .layer_count(self.layers)
     }
 
     /// [byte] Of its texels.
     pub fn bytes(&self) -> u64 {
-        u64::from(self.width) * u64::from(self.height) * u64::from(self.layers) * self.kind.texel_bytes()
+        u64::from(self.width)
+            * u64::from(self.height)
+            * u64::from(self.layers)
+            * self.kind.texel_bytes()
     }
 }
 
@@ -244,8 +293,14 @@ fn allocate(
     location: MemoryLocation,
     linear: bool,
 ) -> Result<Allocation> {
-    let lost = |message: String| Error::Memory { resource: name.to_owned(), message };
-    let mut allocator = gpu.allocator.lock().map_err(|_| lost("the allocator is gone".into()))?;
+    let lost = |message: String| Error::Memory {
+        resource: name.to_owned(),
+        message,
+    };
+    let mut allocator = gpu
+        .allocator
+        .lock()
+        .map_err(|_| lost("the allocator is gone".into()))?;
     allocator
         .allocate(&AllocationCreateDesc {
             name,

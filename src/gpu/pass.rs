@@ -48,16 +48,28 @@ impl ComputePass {
         resources: &Resources,
     ) -> Result<Self> {
         let shader = Shader::find(shader)?;
-        let mut pass = Pass::bind(gpu, name, &[shader], resources, vk::ShaderStageFlags::COMPUTE)?;
+        let mut pass = Pass::bind(
+            gpu,
+            name,
+            &[shader],
+            resources,
+            vk::ShaderStageFlags::COMPUTE,
+        )?;
         let module = Module::new(gpu, shader)?;
         let constants = Constants::new(specialization);
         let constants = constants.info();
         let stage = module.stage(vk::ShaderStageFlags::COMPUTE, &constants);
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(pass.layout);
+        let info = vk::ComputePipelineCreateInfo::default()
+            .stage(stage)
+            .layout(pass.layout);
         // SAFETY: all that `info` points to outlives the call.
-        let created = unsafe { gpu.device.create_compute_pipelines(gpu.cache, &[info], None) };
-        pass.pipeline =
-            created.map_err(|(_, result)| failed(&format!("vkCreateComputePipelines of {name}"))(result))?[0];
+        let created = unsafe {
+            gpu.device
+                .create_compute_pipelines(gpu.cache, &[info], None)
+        };
+        pass.pipeline = created.map_err(|(_, result)| {
+            failed(&format!("vkCreateComputePipelines of {name}"))(result)
+        })?[0];
         gpu.name(pass.pipeline, name);
         Ok(Self(pass))
     }
@@ -77,7 +89,15 @@ impl GraphicsPass {
         let shaders: Vec<&Shader> = [Some(vertex), fragment].into_iter().flatten().collect();
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
         let mut pass = Pass::bind(gpu, name, &shaders, resources, stages)?;
-        pass.pipeline = create_graphics_pipeline(gpu, name, state, vertex, fragment, specialization, pass.layout)?;
+        pass.pipeline = create_graphics_pipeline(
+            gpu,
+            name,
+            state,
+            vertex,
+            fragment,
+            specialization,
+            pass.layout,
+        )?;
         gpu.name(pass.pipeline, name);
         Ok(Self(pass))
     }
@@ -95,29 +115,38 @@ fn create_graphics_pipeline(
     let constants = Constants::new(specialization);
     let constants = constants.info();
     let vertex = Module::new(gpu, vertex)?;
-    let fragment = fragment.map(|shader| Module::new(gpu, shader)).transpose()?;
+    let fragment = fragment
+        .map(|shader| Module::new(gpu, shader))
+        .transpose()?;
     let mut stages = vec![vertex.stage(vk::ShaderStageFlags::VERTEX, &constants)];
-    stages.extend(fragment.as_ref().map(|module| module.stage(vk::ShaderStageFlags::FRAGMENT, &constants)));
+    stages.extend(
+        fragment
+            .as_ref()
+            .map(|module| module.stage(vk::ShaderStageFlags::FRAGMENT, &constants)),
+    );
     let formats: Vec<vk::Format> = state.colors.iter().map(|kind| kind.format()).collect();
     let mut rendering = vk::PipelineRenderingCreateInfo::default()
         .color_attachment_formats(&formats)
         .depth_attachment_format(ImageKind::Depth.format());
     let input = vk::PipelineVertexInputStateCreateInfo::default();
-    let assembly =
-        vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
-    let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+    let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+        .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+    let viewport = vk::PipelineViewportStateCreateInfo::default()
+        .viewport_count(1)
+        .scissor_count(1);
     let raster = vk::PipelineRasterizationStateCreateInfo::default()
         .polygon_mode(vk::PolygonMode::FILL)
         .cull_mode(vk::CullModeFlags::NONE)
         .line_width(1.0);
-    let samples =
-        vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+    let samples = vk::PipelineMultisampleStateCreateInfo::default()
+        .rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(true)
         .depth_write_enable(true)
         .depth_compare_op(vk::CompareOp::GREATER);
     let attachments = vec![
-        vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
+        vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
         formats.len()
     ];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
@@ -136,8 +165,12 @@ fn create_graphics_pipeline(
         .layout(layout)
         .push_next(&mut rendering);
     // SAFETY: all that `info` points to outlives the call.
-    let created = unsafe { gpu.device.create_graphics_pipelines(gpu.cache, &[info], None) };
-    Ok(created.map_err(|(_, result)| failed(&format!("vkCreateGraphicsPipelines of {name}"))(result))?[0])
+    let created = unsafe {
+        gpu.device
+            .create_graphics_pipelines(gpu.cache, &[info], None)
+    };
+    Ok(created
+        .map_err(|(_, result)| failed(&format!("vkCreateGraphicsPipelines of {name}"))(result))?[0])
 }
 
 impl Pass {
@@ -150,8 +183,11 @@ impl Pass {
         stages: vk::ShaderStageFlags,
     ) -> Result<Self> {
         // Shaders of one pass share a number where they share a name.
-        let bindings: BTreeMap<u32, Binding> =
-            shaders.iter().flat_map(|shader| shader.bindings).map(|b| (b.binding, *b)).collect();
+        let bindings: BTreeMap<u32, Binding> = shaders
+            .iter()
+            .flat_map(|shader| shader.bindings)
+            .map(|b| (b.binding, *b))
+            .collect();
         let mut pass = Self {
             gpu: gpu.clone(),
             pipeline: vk::Pipeline::null(),
@@ -211,14 +247,20 @@ impl Pass {
     fn create_set(&mut self, name: &str, bindings: &BTreeMap<u32, Binding>) -> Result<()> {
         let sizes: Vec<_> = bindings
             .values()
-            .map(|b| vk::DescriptorPoolSize::default().ty(descriptor_type(b.kind)).descriptor_count(1))
+            .map(|b| {
+                vk::DescriptorPoolSize::default()
+                    .ty(descriptor_type(b.kind))
+                    .descriptor_count(1)
+            })
             .collect();
         let device = &self.gpu.device;
         // SAFETY: all that the infos point to outlives the calls; the pool frees the set.
         unsafe {
             self.pool = device
                 .create_descriptor_pool(
-                    &vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes),
+                    &vk::DescriptorPoolCreateInfo::default()
+                        .max_sets(1)
+                        .pool_sizes(&sizes),
                     None,
                 )
                 .map_err(failed(&format!("vkCreateDescriptorPool of {name}")))?;
@@ -245,18 +287,30 @@ impl Pass {
         };
         match (resources.get(binding.name), binding.kind) {
             (Some(Resource::Buffer(buffer)), BindingKind::StorageBuffer) => {
-                let info = [vk::DescriptorBufferInfo::default().buffer(buffer.raw).range(vk::WHOLE_SIZE)];
+                let info = [vk::DescriptorBufferInfo::default()
+                    .buffer(buffer.raw)
+                    .range(vk::WHOLE_SIZE)];
                 update(write.buffer_info(&info));
             }
-            (Some(Resource::Image(image)), BindingKind::StorageImage | BindingKind::SampledImage) => {
+            (
+                Some(Resource::Image(image)),
+                BindingKind::StorageImage | BindingKind::SampledImage,
+            ) => {
                 let info = [vk::DescriptorImageInfo::default()
                     .image_view(image.view)
                     .image_layout(vk::ImageLayout::GENERAL)];
                 update(write.image_info(&info));
             }
             (found, kind) => {
-                let what = if found.is_some() { "of another kind" } else { "missing" };
-                return Err(Error::Unsupported(format!("{name}: {} ({kind:?}) is {what}", binding.name)));
+                let what = if found.is_some() {
+                    "of another kind"
+                } else {
+                    "missing"
+                };
+                return Err(Error::Unsupported(format!(
+                    "{name}: {} ({kind:?}) is {what}",
+                    binding.name
+                )));
             }
         }
         Ok(())
@@ -339,6 +393,8 @@ impl Constants {
     }
 
     fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default().map_entries(&self.entries).data(bytemuck::cast_slice(&self.values))
+        vk::SpecializationInfo::default()
+            .map_entries(&self.entries)
+            .data(bytemuck::cast_slice(&self.values))
     }
 }

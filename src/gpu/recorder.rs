@@ -23,7 +23,10 @@ pub enum Draw<'a> {
     /// [vertex] Without vertex input.
     Vertices(u32),
     /// A VkDrawIndexedIndirectCommand at a byte offset, with the index buffer.
-    Indexed { indices: &'a Buffer, command: (&'a Buffer, u64) },
+    Indexed {
+        indices: &'a Buffer,
+        command: (&'a Buffer, u64),
+    },
 }
 
 /// What is drawn to. Colours are cleared to zero and depth to 0, the far end.
@@ -69,16 +72,25 @@ impl Recorder {
         // SAFETY: all infos outlive the calls; `Drop` destroys what is created.
         unsafe {
             let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.family);
-            recorder.pool = device.create_command_pool(&info, None).map_err(failed("vkCreateCommandPool"))?;
-            let info = vk::CommandBufferAllocateInfo::default().command_pool(recorder.pool).command_buffer_count(1);
-            recorder.commands =
-                device.allocate_command_buffers(&info).map_err(failed("vkAllocateCommandBuffers"))?[0];
-            recorder.fence = device.create_fence(&Default::default(), None).map_err(failed("vkCreateFence"))?;
+            recorder.pool = device
+                .create_command_pool(&info, None)
+                .map_err(failed("vkCreateCommandPool"))?;
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(recorder.pool)
+                .command_buffer_count(1);
+            recorder.commands = device
+                .allocate_command_buffers(&info)
+                .map_err(failed("vkAllocateCommandBuffers"))?[0];
+            recorder.fence = device
+                .create_fence(&Default::default(), None)
+                .map_err(failed("vkCreateFence"))?;
             if recorder.timed_max > 0 {
                 let info = vk::QueryPoolCreateInfo::default()
                     .query_type(vk::QueryType::TIMESTAMP)
                     .query_count(2 * recorder.timed_max);
-                recorder.queries = device.create_query_pool(&info, None).map_err(failed("vkCreateQueryPool"))?;
+                recorder.queries = device
+                    .create_query_pool(&info, None)
+                    .map_err(failed("vkCreateQueryPool"))?;
             }
         }
         Ok(recorder)
@@ -90,9 +102,14 @@ impl Recorder {
         let device = &self.gpu.device;
         // SAFETY: the command buffer is not pending: `submit_and_wait` waits.
         unsafe {
-            device.reset_command_pool(self.pool, Default::default()).map_err(failed("vkResetCommandPool"))?;
-            let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-            device.begin_command_buffer(self.commands, &info).map_err(failed("vkBeginCommandBuffer"))?;
+            device
+                .reset_command_pool(self.pool, Default::default())
+                .map_err(failed("vkResetCommandPool"))?;
+            let info = vk::CommandBufferBeginInfo::default()
+                .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+            device
+                .begin_command_buffer(self.commands, &info)
+                .map_err(failed("vkBeginCommandBuffer"))?;
             if self.timed_max > 0 {
                 device.cmd_reset_query_pool(self.commands, self.queries, 0, 2 * self.timed_max);
             }
@@ -142,17 +159,31 @@ impl Recorder {
                     &[],
                 );
                 let bytes = bytemuck::bytes_of(&push);
-                device.cmd_push_constants(commands, pass.layout, vk::ShaderStageFlags::COMPUTE, 0, bytes);
+                device.cmd_push_constants(
+                    commands,
+                    pass.layout,
+                    vk::ShaderStageFlags::COMPUTE,
+                    0,
+                    bytes,
+                );
                 match groups {
                     Groups::Direct([x, y, z]) => device.cmd_dispatch(commands, x, y, z),
-                    Groups::Indirect(buffer, offset) => device.cmd_dispatch_indirect(commands, buffer.raw, offset),
+                    Groups::Indirect(buffer, offset) => {
+                        device.cmd_dispatch_indirect(commands, buffer.raw, offset)
+                    }
                 }
             }
         });
     }
 
     /// Draws with one or more pipelines into cleared attachments.
-    pub fn draw(&mut self, name: &str, push: Push, attachments: &Attachments, draws: &[(&GraphicsPass, Draw)]) {
+    pub fn draw(
+        &mut self,
+        name: &str,
+        push: Push,
+        attachments: &Attachments,
+        draws: &[(&GraphicsPass, Draw)],
+    ) {
         self.pass(name, |device, commands| {
             begin_rendering(device, commands, attachments);
             for (pass, draw) in draws {
@@ -183,14 +214,25 @@ impl Recorder {
     /// Copies all layers of an image, tightly packed.
     pub fn copy_image(&mut self, name: &str, from: &Image, to: &Buffer) {
         self.pass(name, |device, commands| {
-            let layers =
-                vk::ImageSubresourceLayers::default().aspect_mask(from.kind.aspect()).layer_count(from.layers);
+            let layers = vk::ImageSubresourceLayers::default()
+                .aspect_mask(from.kind.aspect())
+                .layer_count(from.layers);
             let region = [vk::BufferImageCopy::default()
                 .image_subresource(layers)
-                .image_extent(vk::Extent3D { width: from.width, height: from.height, depth: 1 })];
+                .image_extent(vk::Extent3D {
+                    width: from.width,
+                    height: from.height,
+                    depth: 1,
+                })];
             // SAFETY: recording; the buffer was made for the image.
             unsafe {
-                device.cmd_copy_image_to_buffer(commands, from.raw, vk::ImageLayout::GENERAL, to.raw, &region)
+                device.cmd_copy_image_to_buffer(
+                    commands,
+                    from.raw,
+                    vk::ImageLayout::GENERAL,
+                    to.raw,
+                    &region,
+                )
             };
         });
     }
@@ -205,12 +247,20 @@ impl Recorder {
         // SAFETY: the recording is complete; the queue is externally synchronized by the lock; the
         // fence is unsignalled and waited for.
         unsafe {
-            device.end_command_buffer(self.commands).map_err(failed("vkEndCommandBuffer"))?;
+            device
+                .end_command_buffer(self.commands)
+                .map_err(failed("vkEndCommandBuffer"))?;
             let submission = self.gpu.submission.lock();
-            device.queue_submit2(self.gpu.queue, &submit, self.fence).map_err(failed("vkQueueSubmit2"))?;
+            device
+                .queue_submit2(self.gpu.queue, &submit, self.fence)
+                .map_err(failed("vkQueueSubmit2"))?;
             drop(submission);
-            device.wait_for_fences(&[self.fence], true, u64::MAX).map_err(failed("vkWaitForFences"))?;
-            device.reset_fences(&[self.fence]).map_err(failed("vkResetFences"))?;
+            device
+                .wait_for_fences(&[self.fence], true, u64::MAX)
+                .map_err(failed("vkWaitForFences"))?;
+            device
+                .reset_fences(&[self.fence])
+                .map_err(failed("vkResetFences"))?;
         }
         self.timings()
     }
@@ -223,11 +273,23 @@ impl Recorder {
         let mut ticks = vec![0u64; 2 * timed];
         // SAFETY: the queries were written by the submission that has finished.
         unsafe {
-            self.gpu.device.get_query_pool_results(self.queries, 0, &mut ticks, vk::QueryResultFlags::TYPE_64)
+            self.gpu.device.get_query_pool_results(
+                self.queries,
+                0,
+                &mut ticks,
+                vk::QueryResultFlags::TYPE_64,
+            )
         }
         .map_err(failed("vkGetQueryPoolResults"))?;
         let ms = |pair: &[u64]| pair[1].wrapping_sub(pair[0]) as f64 * self.gpu.tick_ns * 1e-6;
-        Ok(Timings { passes: self.names.iter().cloned().zip(ticks.chunks_exact(2).map(ms)).collect() })
+        Ok(Timings {
+            passes: self
+                .names
+                .iter()
+                .cloned()
+                .zip(ticks.chunks_exact(2).map(ms))
+                .collect(),
+        })
     }
 
     /// One pass: what was written before is visible to it.
@@ -261,7 +323,11 @@ impl Recorder {
         if query < 2 * self.timed_max {
             let stage = vk::PipelineStageFlags2::ALL_COMMANDS;
             // SAFETY: recording; the query exists and was reset by `begin`.
-            unsafe { self.gpu.device.cmd_write_timestamp2(self.commands, stage, self.queries, query) };
+            unsafe {
+                self.gpu
+                    .device
+                    .cmd_write_timestamp2(self.commands, stage, self.queries, query)
+            };
         }
     }
 
@@ -303,13 +369,23 @@ fn begin_rendering(device: &ash::Device, commands: vk::CommandBuffer, attachment
             .load_op(vk::AttachmentLoadOp::CLEAR)
             .store_op(vk::AttachmentStoreOp::STORE)
     };
-    let colors: Vec<_> = attachments.colors.iter().map(|image| attach(image)).collect();
+    let colors: Vec<_> = attachments
+        .colors
+        .iter()
+        .map(|image| attach(image))
+        .collect();
     let depth = attach(attachments.depth);
     let (width, height) = (attachments.depth.width, attachments.depth.height);
     let margin = attachments.margin;
-    let whole = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
+    let whole = vk::Rect2D {
+        offset: vk::Offset2D::default(),
+        extent: vk::Extent2D { width, height },
+    };
     let inner = vk::Rect2D {
-        offset: vk::Offset2D { x: margin as i32, y: margin as i32 },
+        offset: vk::Offset2D {
+            x: margin as i32,
+            y: margin as i32,
+        },
         extent: vk::Extent2D {
             width: width.saturating_sub(2 * margin),
             height: height.saturating_sub(2 * margin),
@@ -348,11 +424,21 @@ fn record_draw(
     unsafe {
         device.cmd_bind_pipeline(commands, vk::PipelineBindPoint::GRAPHICS, pass.pipeline);
         let sets = [pass.set];
-        device.cmd_bind_descriptor_sets(commands, vk::PipelineBindPoint::GRAPHICS, pass.layout, 0, &sets, &[]);
+        device.cmd_bind_descriptor_sets(
+            commands,
+            vk::PipelineBindPoint::GRAPHICS,
+            pass.layout,
+            0,
+            &sets,
+            &[],
+        );
         device.cmd_push_constants(commands, pass.layout, stages, 0, bytemuck::bytes_of(&push));
         match draw {
             Draw::Vertices(count) => device.cmd_draw(commands, *count, 1, 0, 0),
-            Draw::Indexed { indices, command: (buffer, offset) } => {
+            Draw::Indexed {
+                indices,
+                command: (buffer, offset),
+            } => {
                 device.cmd_bind_index_buffer(commands, indices.raw, 0, vk::IndexType::UINT32);
                 device.cmd_draw_indexed_indirect(commands, buffer.raw, *offset, 1, 0);
             }

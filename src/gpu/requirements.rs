@@ -29,7 +29,10 @@ impl Features {
     /// What the engine uses, and nothing else.
     pub fn required() -> Self {
         Self {
-            core: vk::PhysicalDeviceFeatures { shader_storage_image_extended_formats: vk::TRUE, ..Default::default() },
+            core: vk::PhysicalDeviceFeatures {
+                shader_storage_image_extended_formats: vk::TRUE,
+                ..Default::default()
+            },
             v12: vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true),
             v13: vk::PhysicalDeviceVulkan13Features::default()
                 .dynamic_rendering(true)
@@ -44,28 +47,32 @@ const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 4] = [
     (
         vk::Format::D32_SFLOAT,
         vk::FormatFeatureFlags::from_raw(
-            vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+            vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT.as_raw()
+                | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
         ),
         "D32_SFLOAT as a sampled depth attachment",
     ),
     (
         vk::Format::R32G32_SFLOAT,
         vk::FormatFeatureFlags::from_raw(
-            vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+            vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw()
+                | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
         ),
         "R32G32_SFLOAT as a sampled storage image",
     ),
     (
         vk::Format::R32G32B32A32_SFLOAT,
         vk::FormatFeatureFlags::from_raw(
-            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw()
+                | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
         ),
         "R32G32B32A32_SFLOAT as a sampled colour attachment",
     ),
     (
         vk::Format::R8G8B8A8_UNORM,
         vk::FormatFeatureFlags::from_raw(
-            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw() | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw()
+                | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
         ),
         "R8G8B8A8_UNORM as a sampled colour attachment",
     ),
@@ -81,13 +88,19 @@ pub fn queue_family(instance: &ash::Instance, device: vk::PhysicalDevice) -> Opt
     // SAFETY: the device was enumerated from this instance.
     let families = unsafe { instance.get_physical_device_queue_family_properties(device) };
     let all = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
-    families.iter().position(|family| family.queue_flags.contains(all)).map(|index| index as u32)
+    families
+        .iter()
+        .position(|family| family.queue_flags.contains(all))
+        .map(|index| index as u32)
 }
 
 pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
     // SAFETY: the device was enumerated from this instance.
     let (properties, memory) = unsafe {
-        (instance.get_physical_device_properties(device), instance.get_physical_device_memory_properties(device))
+        (
+            instance.get_physical_device_properties(device),
+            instance.get_physical_device_memory_properties(device),
+        )
     };
     let heaps = memory.memory_heaps_as_slice().iter();
     // SAFETY: as above.
@@ -120,8 +133,10 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
     // SAFETY: the device was enumerated from this instance.
     let properties = unsafe { instance.get_physical_device_properties(device) };
     if properties.api_version < vk::API_VERSION_1_3 {
-        let (major, minor) =
-            (vk::api_version_major(properties.api_version), vk::api_version_minor(properties.api_version));
+        let (major, minor) = (
+            vk::api_version_major(properties.api_version),
+            vk::api_version_minor(properties.api_version),
+        );
         missing.push(format!("Vulkan 1.3 (it has {major}.{minor})"));
         return missing;
     }
@@ -135,10 +150,14 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
     }
     let limits = &properties.limits;
     if limits.max_per_stage_descriptor_storage_buffers < STORAGE_BUFFERS {
-        missing.push(format!("maxPerStageDescriptorStorageBuffers ≥ {STORAGE_BUFFERS}"));
+        missing.push(format!(
+            "maxPerStageDescriptorStorageBuffers ≥ {STORAGE_BUFFERS}"
+        ));
     }
     if limits.max_compute_work_group_invocations < GROUP_INVOCATIONS {
-        missing.push(format!("maxComputeWorkGroupInvocations ≥ {GROUP_INVOCATIONS}"));
+        missing.push(format!(
+            "maxComputeWorkGroupInvocations ≥ {GROUP_INVOCATIONS}"
+        ));
     }
     if queue_family(instance, device).is_none() {
         missing.push("a queue family with graphics and compute".into());
@@ -146,15 +165,24 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
     missing
 }
 
-fn missing_features(instance: &ash::Instance, device: vk::PhysicalDevice, missing: &mut Vec<String>) {
+fn missing_features(
+    instance: &ash::Instance,
+    device: vk::PhysicalDevice,
+    missing: &mut Vec<String>,
+) {
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
-    let mut found = vk::PhysicalDeviceFeatures2::default().push_next(&mut v12).push_next(&mut v13);
+    let mut found = vk::PhysicalDeviceFeatures2::default()
+        .push_next(&mut v12)
+        .push_next(&mut v13);
     // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
     unsafe { instance.get_physical_device_features2(device, &mut found) };
     let core = found.features;
     for (have, name) in [
-        (core.shader_storage_image_extended_formats, "shaderStorageImageExtendedFormats"),
+        (
+            core.shader_storage_image_extended_formats,
+            "shaderStorageImageExtendedFormats",
+        ),
         (v12.scalar_block_layout, "scalarBlockLayout"),
         (v13.dynamic_rendering, "dynamicRendering"),
         (v13.synchronization2, "synchronization2"),

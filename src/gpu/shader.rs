@@ -32,7 +32,8 @@ struct Aligned<T: ?Sized>(T);
 
 macro_rules! words {
     ($file:literal) => {{
-        static WORDS: &Aligned<[u8]> = &Aligned(*include_bytes!(concat!(env!("OUT_DIR"), "/", $file)));
+        static WORDS: &Aligned<[u8]> =
+            &Aligned(*include_bytes!(concat!(env!("OUT_DIR"), "/", $file)));
         &WORDS.0
     }};
 }

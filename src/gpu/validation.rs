@@ -12,7 +12,8 @@ pub type Messages = Arc<Mutex<Vec<String>>>;
 pub fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(
-            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
+                | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
         )
         .message_type(
             vk::DebugUtilsMessageTypeFlagsEXT::GENERAL
@@ -34,7 +35,9 @@ unsafe extern "system" fn collect(
     unsafe {
         let messages = &*(user as *const Mutex<Vec<String>>);
         let text = match data.as_ref() {
-            Some(data) if !data.p_message.is_null() => CStr::from_ptr(data.p_message).to_string_lossy().into_owned(),
+            Some(data) if !data.p_message.is_null() => CStr::from_ptr(data.p_message)
+                .to_string_lossy()
+                .into_owned(),
             _ => "a message without text".to_owned(),
         };
         if let Ok(mut messages) = messages.lock() {

@@ -42,10 +42,18 @@ impl Frustum {
 
     /// The part of a triangle that the camera can see if nothing hides it.
     pub fn clip(&self, corners: [DVec3; 3]) -> Vec<DVec3> {
-        let sides = [self.forward + self.right, self.forward - self.right, self.forward + self.up, self.forward - self.up];
+        let sides = [
+            self.forward + self.right,
+            self.forward - self.right,
+            self.forward + self.up,
+            self.forward - self.up,
+        ];
         let mut polygon = corners.to_vec();
         for side in sides {
-            if corners.iter().any(|&corner| side.dot(corner - self.eye) < 0.0) {
+            if corners
+                .iter()
+                .any(|&corner| side.dot(corner - self.eye) < 0.0)
+            {
                 clip(&mut polygon, |point| side.dot(point - self.eye));
             }
         }
@@ -70,6 +78,8 @@ impl Frustum {
 /// [scene units] Distance from the eye to the farthest corner of the scene's box.
 fn farthest(scene: &Scene, eye: DVec3) -> f64 {
     let (lower, upper) = scene.bounds();
-    let reach = (lower.as_dvec3() - eye).abs().max((upper.as_dvec3() - eye).abs());
+    let reach = (lower.as_dvec3() - eye)
+        .abs()
+        .max((upper.as_dvec3() - eye).abs());
     reach.length()
 }

@@ -50,13 +50,21 @@ impl Placed {
     /// How far the light reaches from its centre along a direction in its own frame.
     fn reach(&self, direction: DVec3) -> f64 {
         let along = direction.truncate().abs() * self.half;
-        if self.round { along.length() } else { along.x + along.y }
+        if self.round {
+            along.length()
+        } else {
+            along.x + along.y
+        }
     }
 }
 
 pub fn survey(scene: &Scene, frustum: &Frustum, light: &AreaLight) -> Survey {
     let placed = Placed::new(light, scene.origin);
-    let mut found = Survey { receivers: false, casters: false, faces: [false; 5] };
+    let mut found = Survey {
+        receivers: false,
+        casters: false,
+        faces: [false; 5],
+    };
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for index in 0..scene.triangles.len() {
         let corners = scene.corners(index).map(|corner| corner.as_dvec3());
@@ -64,7 +72,9 @@ pub fn survey(scene: &Scene, frustum: &Frustum, light: &AreaLight) -> Survey {
         if polygon.is_empty() || !may_face(&placed, frustum.eye, corners) {
             continue;
         }
-        polygon.iter_mut().for_each(|point| *point = placed.to_light(*point));
+        polygon
+            .iter_mut()
+            .for_each(|point| *point = placed.to_light(*point));
         clip(&mut polygon, |point| point.z);
         for &point in &polygon {
             found.receivers = true;
@@ -74,7 +84,9 @@ pub fn survey(scene: &Scene, frustum: &Frustum, light: &AreaLight) -> Survey {
     }
     found.casters = found.receivers
         && (0..scene.triangles.len()).any(|index| {
-            let corners = scene.corners(index).map(|corner| placed.to_light(corner.as_dvec3()));
+            let corners = scene
+                .corners(index)
+                .map(|corner| placed.to_light(corner.as_dvec3()));
             may_cast(&placed, corners, lower, upper)
         });
     found
@@ -88,7 +100,8 @@ fn may_face(light: &Placed, eye: DVec3, corners: [DVec3; 3]) -> bool {
     let in_light = DVec3::from(light.axes.map(|axis| axis.dot(visible)));
     let magnitude = (corners[0].abs() + light.center.abs()).element_sum();
     // Seen edge-on, either side may be the visible one.
-    let edge_on = to_eye.abs() <= ROUNDING * normal.length() * (magnitude + eye.abs().element_sum());
+    let edge_on =
+        to_eye.abs() <= ROUNDING * normal.length() * (magnitude + eye.abs().element_sum());
     edge_on
         || visible.dot(light.center - corners[0]) + light.reach(in_light)
             > -ROUNDING * normal.length() * magnitude
@@ -107,11 +120,14 @@ fn mark_faces(faces: &mut [bool; 5], point: DVec3, half: DVec2) {
 
 /// `corners`, `lower` and `upper` (the receivers' box) in the light's frame.
 fn may_cast(light: &Placed, corners: [DVec3; 3], lower: DVec3, upper: DVec3) -> bool {
-    if corners.iter().all(|corner| corner.z <= 0.0) || corners.iter().all(|corner| corner.z >= upper.z) {
+    if corners.iter().all(|corner| corner.z <= 0.0)
+        || corners.iter().all(|corner| corner.z >= upper.z)
+    {
         return false;
     }
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    let magnitude = (lower.abs().max(upper.abs()) + corners[0].abs() + light.center.abs()).element_sum();
+    let magnitude =
+        (lower.abs().max(upper.abs()) + corners[0].abs() + light.center.abs()).element_sum();
     let rounding = ROUNDING * magnitude * normal.length();
     let of_light = -normal.dot(corners[0]);
     let light_reach = light.reach(normal);

@@ -7,8 +7,12 @@ use super::{LightPlan, Outcome, Plan};
 impl Display for Plan {
     fn fmt(&self, out: &mut Formatter) -> Result {
         let (width, height) = self.size;
-        writeln!(out, "image {width}x{height}, {} triangles, {} of them alpha-masked",
-            self.frame.opaque_count + self.frame.masked_count, self.frame.masked_count)?;
+        writeln!(
+            out,
+            "image {width}x{height}, {} triangles, {} of them alpha-masked",
+            self.frame.opaque_count + self.frame.masked_count,
+            self.frame.masked_count
+        )?;
         for light in &self.lights {
             self.write_light(out, light)?;
         }
@@ -25,8 +29,14 @@ impl Display for Plan {
         for omission in &self.omissions {
             writeln!(out, "  {}: {}", omission.what, omission.reason)?;
         }
-        writeln!(out, "  on the device, where it finds so: triangles that shadow nothing visible, views without")?;
-        writeln!(out, "  receivers or casters, mssm levels above a view's largest kernel")
+        writeln!(
+            out,
+            "  on the device, where it finds so: triangles that shadow nothing visible, views without"
+        )?;
+        writeln!(
+            out,
+            "  receivers or casters, mssm levels above a view's largest kernel"
+        )
     }
 }
 

@@ -11,17 +11,36 @@ use crate::shot::Shot;
 
 /// Resources under the names that shaders know them by. Everything that a shader could name exists; what
 /// the plan leaves out is an empty placeholder.
-pub fn create(gpu: &Arc<Gpu>, plan: &Plan, shot: &Shot, costs: shared::Costs, exposure: shared::Exposure) -> Result<Resources> {
+pub fn create(
+    gpu: &Arc<Gpu>,
+    plan: &Plan,
+    shot: &Shot,
+    costs: shared::Costs,
+    exposure: shared::Exposure,
+) -> Result<Resources> {
     let mut resources = Resources::default();
     create_scene(gpu, plan, &shot.scene, &mut resources)?;
     create_views(gpu, plan, &mut resources)?;
     create_images(gpu, plan, &mut resources)?;
-    for (name, data) in [("costs", bytemuck::bytes_of(&costs)), ("exposure", bytemuck::bytes_of(&exposure))] {
+    for (name, data) in [
+        ("costs", bytemuck::bytes_of(&costs)),
+        ("exposure", bytemuck::bytes_of(&exposure)),
+    ] {
         resources.add_buffer(name, Buffer::with_data(gpu, name, data)?);
     }
     let counters = [shared::Counters::default()];
     resources.add_buffer("counters", Buffer::with_data(gpu, "counters", &counters)?);
-    let names = ["caster_indices", "kernels", "packets", "pixels", "occlusion", "fits", "lists", "visibility", "picture"];
+    let names = [
+        "caster_indices",
+        "kernels",
+        "packets",
+        "pixels",
+        "occlusion",
+        "fits",
+        "lists",
+        "visibility",
+        "picture",
+    ];
     for name in names {
         resources.add_buffer(name, Buffer::new(gpu, name, planned(plan, name))?);
     }
@@ -29,10 +48,18 @@ pub fn create(gpu: &Arc<Gpu>, plan: &Plan, shot: &Shot, costs: shared::Costs, ex
 }
 
 fn planned(plan: &Plan, name: &str) -> u64 {
-    plan.resources.iter().find(|(known, _)| *known == name).map_or(0, |&(_, bytes)| bytes)
+    plan.resources
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map_or(0, |&(_, bytes)| bytes)
 }
 
-fn create_scene(gpu: &Arc<Gpu>, plan: &Plan, scene: &Scene, resources: &mut Resources) -> Result<()> {
+fn create_scene(
+    gpu: &Arc<Gpu>,
+    plan: &Plan,
+    scene: &Scene,
+    resources: &mut Resources,
+) -> Result<()> {
     let mut add = |name: &'static str, data: &[u8]| -> Result<()> {
         let data = if planned(plan, name) > 0 { data } else { &[] };
         resources.add_buffer(name, Buffer::with_data(gpu, name, data)?);
@@ -49,7 +76,10 @@ fn create_scene(gpu: &Arc<Gpu>, plan: &Plan, scene: &Scene, resources: &mut Reso
     }
     add("positions", bytemuck::cast_slice(&positions))?;
     add("triangles", bytemuck::cast_slice(&scene.triangles))?;
-    add("triangle_surfaces", bytemuck::cast_slice(&scene.triangle_materials))?;
+    add(
+        "triangle_surfaces",
+        bytemuck::cast_slice(&scene.triangle_materials),
+    )?;
     add("surfaces", bytemuck::cast_slice(&surfaces))?;
     add("texcoords", bytemuck::cast_slice(&texcoords))?;
     add("vertex_surfaces", bytemuck::cast_slice(&vertex_surfaces))?;
@@ -110,7 +140,12 @@ fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resu
         ("normal_world", ImageKind::Vector, plan.size, 1),
         ("albedo", ImageKind::Color, plan.size, 1),
         ("shadow_map", ImageKind::Depth, map, 1),
-        ("mssm", ImageKind::Bounds, if plan.levels > 0 { map } else { (1, 1) }, plan.levels.max(1)),
+        (
+            "mssm",
+            ImageKind::Bounds,
+            if plan.levels > 0 { map } else { (1, 1) },
+            plan.levels.max(1),
+        ),
     ];
     for (name, kind, size, layers) in images {
         resources.add_image(name, Image::new(gpu, name, kind, size, layers)?);

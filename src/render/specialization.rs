@@ -5,6 +5,10 @@ use crate::plan::{Plan, Variant};
 use crate::shot::{Leaf, Mapping, Settings, Technique};
 use crate::technique::Work;
 
+/// Turns of loops that any driver allows an invocation: lavapipe ends all loops after 65535 in sum,
+/// without a word. What is not finished by then is reported (`Fit::unfinished`).
+const STEPS_MAX: u32 = 60000;
+
 /// Constants of the passes of a view.
 pub fn of_view(plan: &Plan, settings: &Settings, variant: Variant, work: Work) -> Specialization {
     // Whoever walks the pixel list has packets of one pixel; so have techniques without packets.
@@ -25,6 +29,7 @@ pub fn of_view(plan: &Plan, settings: &Settings, variant: Variant, work: Work) -
         (8, u32::from(variant.accumulate)),
         (9, u32::from(plan.textured)),
         (10, held),
+        (11, STEPS_MAX),
     ]
 }
 

@@ -4,7 +4,9 @@ use std::mem::offset_of;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::gpu::{Attachments, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Recorder, Resources};
+use crate::gpu::{
+    Attachments, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Recorder, Resources,
+};
 use crate::plan::{Plan, Variant};
 use crate::shared::{Fit, GROUP_SIZE, GROUPS_PER_ROW, Lists, Push, TILE_SIZE};
 use crate::shot::Settings;
@@ -36,10 +38,15 @@ impl ViewPasses {
         resources: &Resources,
     ) -> Result<Self> {
         let constants = |work| specialization::of_view(plan, settings, variant, work);
-        let compute =
-            |name: &str, shader: &str, work| ComputePass::new(gpu, name, shader, &constants(work), resources);
+        let compute = |name: &str, shader: &str, work| {
+            ComputePass::new(gpu, name, shader, &constants(work), resources)
+        };
         let draw = |name: &str, fragment| {
-            let state = GraphicsState { vertex: "shadow_map.vert", fragment, colors: &[] };
+            let state = GraphicsState {
+                vertex: "shadow_map.vert",
+                fragment,
+                colors: &[],
+            };
             GraphicsPass::new(gpu, name, &state, &constants(Work::Packets), resources)
         };
         let stage = |stage: &Stage| Ok((*stage, compute(stage.name, stage.shader, stage.work)?));
@@ -48,50 +55,100 @@ impl ViewPasses {
             casters: compute("casters", "casters.comp", Work::Pixels)?,
             fit: compute("fit", "fit.comp", Work::Packets)?,
             opaque: draw("shadow_map", None)?,
-            masked: plan.masked.then(|| draw("shadow_map (masked)", Some("shadow_map.frag"))).transpose()?,
-            mssm: recipe.mssm.then(|| compute("mssm", "mssm.comp", Work::Pixels)).transpose()?,
+            masked: plan
+                .masked
+                .then(|| draw("shadow_map (masked)", Some("shadow_map.frag")))
+                .transpose()?,
+            mssm: recipe
+                .mssm
+                .then(|| compute("mssm", "mssm.comp", Work::Pixels))
+                .transpose()?,
             stages: recipe.stages.iter().map(stage).collect::<Result<_>>()?,
         })
     }
 
     /// Shadow map and MSSM of view `index`, fitted to what can cast.
-    pub fn record_map(&self, recorder: &mut Recorder, plan: &Plan, resources: &Resources, index: u32) -> Result<()> {
+    pub fn record_map(
+        &self,
+        recorder: &mut Recorder,
+        plan: &Plan,
+        resources: &Resources,
+        index: u32,
+    ) -> Result<()> {
         let push = Push { index, level: 0 };
-        recorder.dispatch("receivers", &self.receivers, push, Groups::Direct(tiles(plan)));
+        recorder.dispatch(
+            "receivers",
+            &self.receivers,
+            push,
+            Groups::Direct(tiles(plan)),
+        );
         let groups = (plan.frame.opaque_count + plan.frame.masked_count).div_ceil(GROUP_SIZE);
-        let rows = [groups.min(GROUPS_PER_ROW), groups.div_ceil(GROUPS_PER_ROW), 1];
+        let rows = [
+            groups.min(GROUPS_PER_ROW),
+            groups.div_ceil(GROUPS_PER_ROW),
+            1,
+        ];
         recorder.dispatch("casters", &self.casters, push, Groups::Direct(rows));
         recorder.dispatch("fit", &self.fit, push, Groups::Direct([1, 1, 1]));
 
         let fits = resources.buffer("fits")?;
         let indices = resources.buffer("caster_indices")?;
-        let casters = |offset| Draw::Indexed { indices, command: (fits, in_fit(index, offset)) };
+        let casters = |offset| Draw::Indexed {
+            indices,
+            command: (fits, in_fit(index, offset)),
+        };
         let mut draws = vec![(&self.opaque, casters(offset_of!(Fit, opaque_draw)))];
         if let Some(masked) = &self.masked {
             draws.push((masked, casters(offset_of!(Fit, masked_draw))));
         }
-        let attachments = Attachments { colors: &[], depth: resources.image("shadow_map")?, margin: MAP_MARGIN };
+        let attachments = Attachments {
+            colors: &[],
+            depth: resources.image("shadow_map")?,
+            margin: MAP_MARGIN,
+        };
         recorder.draw("shadow_map", push, &attachments, &draws);
 
         if let Some(mssm) = &self.mssm {
             for level in 0..plan.levels {
-                let offset = in_fit(index, offset_of!(Fit, level_groups) + level as usize * size_of::<[u32; 3]>());
-                recorder.dispatch("mssm", mssm, Push { index, level }, Groups::Indirect(fits, offset));
+                let offset = in_fit(
+                    index,
+                    offset_of!(Fit, level_groups) + level as usize * size_of::<[u32; 3]>(),
+                );
+                recorder.dispatch(
+                    "mssm",
+                    mssm,
+                    Push { index, level },
+                    Groups::Indirect(fits, offset),
+                );
             }
         }
         Ok(())
     }
 
     /// The technique's stages in view `index`.
-    pub fn record_stages(&self, recorder: &mut Recorder, plan: &Plan, resources: &Resources, index: u32) -> Result<()> {
+    pub fn record_stages(
+        &self,
+        recorder: &mut Recorder,
+        plan: &Plan,
+        resources: &Resources,
+        index: u32,
+    ) -> Result<()> {
         let (fits, lists) = (resources.buffer("fits")?, resources.buffer("lists")?);
         for (stage, pass) in &self.stages {
             let groups = match stage.work {
                 Work::Pixels => Groups::Direct(tiles(plan)),
-                Work::Kernels => Groups::Indirect(fits, in_fit(index, offset_of!(Fit, kernel_groups))),
-                Work::Packets => Groups::Indirect(fits, in_fit(index, offset_of!(Fit, classify_groups))),
-                Work::PacketList => Groups::Indirect(lists, in_lists(index, offset_of!(Lists, packet_groups))),
-                Work::PixelList => Groups::Indirect(lists, in_lists(index, offset_of!(Lists, pixel_groups))),
+                Work::Kernels => {
+                    Groups::Indirect(fits, in_fit(index, offset_of!(Fit, kernel_groups)))
+                }
+                Work::Packets => {
+                    Groups::Indirect(fits, in_fit(index, offset_of!(Fit, classify_groups)))
+                }
+                Work::PacketList => {
+                    Groups::Indirect(lists, in_lists(index, offset_of!(Lists, packet_groups)))
+                }
+                Work::PixelList => {
+                    Groups::Indirect(lists, in_lists(index, offset_of!(Lists, pixel_groups)))
+                }
             };
             recorder.dispatch(stage.name, pass, Push { index, level: 0 }, groups);
         }
@@ -101,7 +158,11 @@ impl ViewPasses {
 
 /// Work groups over the image.
 pub fn tiles(plan: &Plan) -> [u32; 3] {
-    [plan.size.0.div_ceil(TILE_SIZE), plan.size.1.div_ceil(TILE_SIZE), 1]
+    [
+        plan.size.0.div_ceil(TILE_SIZE),
+        plan.size.1.div_ceil(TILE_SIZE),
+        1,
+    ]
 }
 
 fn in_fit(index: u32, offset: usize) -> u64 {

@@ -5,6 +5,13 @@
 use super::{Recipe, Stage, Work};
 
 pub fn recipe() -> Recipe {
-    let stage = Stage { name: "hard_visibility", shader: "hard_visibility.comp", work: Work::Pixels };
-    Recipe { mssm: false, stages: vec![stage] }
+    let stage = Stage {
+        name: "hard_visibility",
+        shader: "hard_visibility.comp",
+        work: Work::Pixels,
+    };
+    Recipe {
+        mssm: false,
+        stages: vec![stage],
+    }
 }

@@ -7,8 +7,11 @@
 use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, Work};
 use crate::shot::Settings;
 
-const PACKETS: Stage =
-    Stage { name: "packet_visibility", shader: "packet_visibility.comp", work: Work::PacketList };
+const PACKETS: Stage = Stage {
+    name: "packet_visibility",
+    shader: "packet_visibility.comp",
+    work: Work::PacketList,
+};
 
 /// A packet of a single pixel is a pixel: the pixel-wise path.
 pub fn recipe(settings: &Settings) -> Recipe {

@@ -7,10 +7,17 @@
 use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, Work};
 use crate::shot::Settings;
 
-const FLAT: Stage =
-    Stage { name: "contour_visibility", shader: "contour_visibility.comp", work: Work::Kernels };
+const FLAT: Stage = Stage {
+    name: "contour_visibility",
+    shader: "contour_visibility.comp",
+    work: Work::Kernels,
+};
 
 pub fn recipe(settings: &Settings) -> Recipe {
-    let stages = if settings.hierarchical { vec![KERNELS, CLASSIFY, PIXELS] } else { vec![KERNELS, FLAT] };
+    let stages = if settings.hierarchical {
+        vec![KERNELS, CLASSIFY, PIXELS]
+    } else {
+        vec![KERNELS, FLAT]
+    };
     Recipe { mssm: true, stages }
 }
