@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 // Visibility of packets of w×h pixels: the MSSM is walked with a stack, contour cells are extracted once
 // and integrated for each pixel [Yang09 §4.1, §4.2, alg. 2 and 3]. With packets of 1×1 it works off
 // the pixel list.
@@ -43,8 +44,6 @@ float beyond[HELD];
 // Back-projection scale of a map that is parallel to the light, which all receivers share.
 vec2 kappa;
 
-// Turns of loops so far.
-uint steps = 0u;
 uint nodes_visited = 0u;
 uint edges_extracted = 0u;
 
@@ -135,13 +134,14 @@ void pass_by(inout Walk walk, ivec2 first, ivec2 last) {
 }
 
 // Walks to the next cell with a contour and past it. False: there is none left.
-bool next_cell(View view, Packet packet, inout Walk walk, out ivec2 cell) {
+bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
     ivec2 first = unpacked(packet.first);
     ivec2 last = unpacked(packet.last);
     int size = int(view.map_size);
     bool found = false;
-    while (!found && !walk.ended && steps < STEPS_MAX) {
-        ++steps;
+    uint turns = 0u;
+    while (!found && !walk.ended && turns < STEPS_MAX) {
+        ++turns;
         vec2 bounds = mssm_fetch(mssm, walk.node, walk.level, size);
         bool inside = all(lessThanEqual(walk.node, last));
         bool descend = inside && bounds.y > packet.depth_min && bounds.x <= packet.depth_max
@@ -156,41 +156,49 @@ bool next_cell(View view, Packet packet, inout Walk walk, out ivec2 cell) {
             pass_by(walk, first, last);
         }
     }
+    steps += subgroupMax(turns);
     return found;
 }
 
-// Integrates the contour of one cell for each pixel. False: the pixels disagree about it and the leaf rule
-// is to reprocess.
-bool integrate(View view, Packet packet, ivec2 cell) {
+// Integrates one segment of a cell's contour for each pixel. More: some pixel's contour has another one.
+// False: the pixels disagree about the contour and the leaf rule is to reprocess.
+bool integrate(View view, Packet packet, ivec2 cell, uint segment, out bool more) {
     vec4 depths = samples_of(shadow_map, cell);
     uint mask = mask_of(depths, packet.depth_max);
     bool agreed = PIXELWISE || mask == mask_of(depths, packet.depth_min);
-    if (REPROCESS && !agreed) return false;
-    if (agreed) edges_extracted += segment_count(mask);
+    if (agreed) edges_extracted += uint(segment < segment_count(mask));
+    more = false;
     for (uint batch = 0u; batch < HELD; batch += BATCH) {
         [[unroll]] for (uint k = 0u; k < BATCH; ++k) {
             uint i = batch + k;
             if (i < HELD && is_held[i]) {
-                uint own = mask_of(depths, held[i].biased);
-                if (!agreed) edges_extracted += segment_count(own);
-                beyond[i] += cell_beyond(view, held[i], cell, depths, own);
+                uint own = REPROCESS ? mask : mask_of(depths, held[i].biased);
+                beyond[i] += segment_beyond(view, held[i], cell, depths, own, segment);
+                edges_extracted += uint(!agreed && segment < segment_count(own));
+                more = more || segment + 1u < segment_count(own);
             }
         }
     }
-    return true;
+    steps += HELD / BATCH;
+    return agreed || !REPROCESS;
 }
 
-// The loops are nested so that invocations side by side integrate together and walk together.
-// False: to be reprocessed.
+// The loops are nested so that invocations side by side integrate together and walk together; the rare
+// second segment of a cell is a turn of its own. False: to be reprocessed.
 bool traverse(View view, Fit fit, Packet packet) {
     Walk walk = start_of(packet, int(fit.level_count));
+    ivec2 cell = ivec2(0);
+    uint segment = 0u;
+    bool more = false;
     bool agreed = true;
-    while (agreed && !walk.ended && steps < STEPS_MAX) {
+    while (agreed && (more || !walk.ended) && steps < STEPS_MAX) {
         ++steps;
-        ivec2 cell = ivec2(0);
-        if (next_cell(view, packet, walk, cell)) agreed = integrate(view, packet, cell);
+        segment = more ? segment + 1u : 0u;
+        bool found = more;
+        if (!more) found = next_cell(view, packet, walk, cell);
+        if (found) agreed = integrate(view, packet, cell, segment, more);
     }
-    if (agreed && !walk.ended) atomicAdd(fits[push.index].unfinished, 1u);
+    if (agreed && (more || !walk.ended)) atomicAdd(fits[push.index].unfinished, 1u);
     return agreed;
 }
 

@@ -29,21 +29,16 @@ float area_beyond(View view, vec3 a, vec3 b, float side) {
     return inside ? beyond : 0.0;
 }
 
-// Sum of `area_beyond` over the segments of one cell, for one receiver.
-float cell_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint mask) {
-    float beyond = 0.0;
+// `area_beyond` of one segment of a cell, for one receiver; 0 where the cell has fewer.
+float segment_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint mask, uint segment) {
+    uint from = start_edge(mask, segment);
+    uint to = end_edge(mask, segment);
     vec2 corner = vec2(cell);
+    vec3 a = back_project(receiver, corner + midpoint(from) - receiver.t, start_depth(depths, from));
+    vec3 b = back_project(receiver, corner + midpoint(to) - receiver.t, end_depth(depths, to));
     bool own = cell == ivec2(floor(receiver.t));
-    [[unroll]] for (uint i = 0u; i < 2u; ++i) {
-        if (i >= segment_count(mask)) break;
-        uint from = start_edge(mask, i);
-        uint to = end_edge(mask, i);
-        vec3 a = back_project(receiver, corner + midpoint(from) - receiver.t, start_depth(depths, from));
-        vec3 b = back_project(receiver, corner + midpoint(to) - receiver.t, end_depth(depths, to));
-        float side = own ? side_of(from, to, receiver.t - corner) : 0.0;
-        beyond += area_beyond(view, a, b, side);
-    }
-    return beyond;
+    float beyond = area_beyond(view, a, b, own ? side_of(from, to, receiver.t - corner) : 0.0);
+    return segment < segment_count(mask) ? beyond : 0.0;
 }
 
 // The samples at a cell's corners, counter-clockwise from (0, 0).

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 // Visibility pixel by pixel from every dual cell of the kernel [GBP07, as re-implemented in Yang09 §6].
 #include "pass.glsl"
 #include "depth.glsl"
@@ -21,34 +22,48 @@ layout(binding = 8, scalar) readonly buffer Sectors { float sectors[]; };
 layout(binding = 9, scalar) buffer CountersBlock { Counters counters; };
 #include "radial.glsl"
 
-// Turns of loops so far.
-uint steps = 0u;
 uint cells_visited = 0u;
 uint edges_extracted = 0u;
 
-// The loops are nested so that invocations side by side integrate together and look for contours together.
+// Goes on to the next cell with a contour, from `cell` on; `found` is that cell and its samples.
+void next_contour(Receiver receiver, ivec2 first, ivec2 last, inout ivec2 cell, out ivec2 found, out vec4 depths,
+                  out uint mask) {
+    found = cell;
+    depths = vec4(0.0);
+    mask = 0u;
+    uint turns = 0u;
+    while (segment_count(mask) == 0u && cell.y <= last.y && turns < STEPS_MAX) {
+        ++turns;
+        found = cell;
+        depths = samples_of(shadow_map, cell);
+        mask = mask_of(depths, receiver.biased);
+        cell = cell.x < last.x ? cell + ivec2(1, 0) : ivec2(first.x, cell.y + 1);
+    }
+    cells_visited += turns;
+    steps += subgroupMax(turns);
+}
+
+// The loops are nested so that invocations side by side integrate together and look for contours together;
+// the rare second segment of a cell is a turn of its own.
 float sum_beyond(View view, Receiver receiver, Kernel kernel) {
     ivec2 first = unpacked(kernel.first);
     ivec2 last = unpacked(kernel.last);
     ivec2 cell = first;
+    ivec2 found = first;
+    vec4 depths = vec4(0.0);
+    uint mask = 0u;
+    uint segment = 0u;
+    bool more = false;
     float beyond = 0.0;
-    while (cell.y <= last.y && steps < STEPS_MAX) {
+    while ((more || cell.y <= last.y) && steps < STEPS_MAX) {
         ++steps;
-        ivec2 found = cell;
-        vec4 depths = vec4(0.0);
-        uint mask = 0u;
-        while (segment_count(mask) == 0u && cell.y <= last.y && steps < STEPS_MAX) {
-            ++steps;
-            ++cells_visited;
-            found = cell;
-            depths = samples_of(shadow_map, cell);
-            mask = mask_of(depths, receiver.biased);
-            cell = cell.x < last.x ? cell + ivec2(1, 0) : ivec2(first.x, cell.y + 1);
-        }
-        edges_extracted += segment_count(mask);
-        beyond += cell_beyond(view, receiver, found, depths, mask);
+        segment = more ? segment + 1u : 0u;
+        if (!more) next_contour(receiver, first, last, cell, found, depths, mask);
+        beyond += segment_beyond(view, receiver, found, depths, mask, segment);
+        edges_extracted += uint(segment < segment_count(mask));
+        more = segment + 1u < segment_count(mask);
     }
-    if (cell.y <= last.y) atomicAdd(fits[push.index].unfinished, 1u);
+    if (more || cell.y <= last.y) atomicAdd(fits[push.index].unfinished, 1u);
     return beyond;
 }
 

@@ -148,6 +148,9 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
             missing.push(name.into());
         }
     }
+    if !subgroup_arithmetic(instance, device) {
+        missing.push("subgroup arithmetic in compute shaders".into());
+    }
     let limits = &properties.limits;
     if limits.max_per_stage_descriptor_storage_buffers < STORAGE_BUFFERS {
         missing.push(format!(
@@ -163,6 +166,19 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
         missing.push("a queue family with graphics and compute".into());
     }
     missing
+}
+
+fn subgroup_arithmetic(instance: &ash::Instance, device: vk::PhysicalDevice) -> bool {
+    let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
+    // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
+    unsafe { instance.get_physical_device_properties2(device, &mut properties) };
+    subgroups
+        .supported_stages
+        .contains(vk::ShaderStageFlags::COMPUTE)
+        && subgroups
+            .supported_operations
+            .contains(vk::SubgroupFeatureFlags::ARITHMETIC)
 }
 
 fn missing_features(
