@@ -33,7 +33,10 @@ struct Survey {
     float pixel_cost;
 };
 
-float node_cost(float width) { return log2(max(width, 2.0)) * width; }
+float node_cost(float width) {
+    precise float cost = log2(max(width, 2.0)) * width;
+    return cost;
+}
 
 float width_of(ivec2 first, ivec2 last) {
     ivec2 side = last - first + 1;
@@ -53,7 +56,8 @@ void include(inout Survey survey, Kernel kernel, Receiver receiver) {
     survey.kernel_depths.x = min(survey.kernel_depths.x, kernel.depth_min);
     survey.kernel_depths.y = max(survey.kernel_depths.y, kernel.depth_max);
     float width = width_of(first, last);
-    survey.pixel_cost += node_cost(width) + (costs.edge + costs.visibility) * width;
+    precise float cost = node_cost(width) + (costs.edge + costs.visibility) * width;
+    survey.pixel_cost += cost;
     ++survey.count;
 }
 
@@ -68,7 +72,7 @@ bool is_coherent(Survey survey) {
     float null = clamp(overlap / max(survey.kernel_depths.y - survey.kernel_depths.x, 1e-30), 0.0, 1.0);
     float divergence = 1.0 - pow(1.0 - null, width * width);
     if (REPROCESS && divergence > DIVERGENCE_MAX) return false;
-    float packet_cost = node_cost(width) + (costs.edge + costs.visibility * float(survey.count)) * width;
+    precise float packet_cost = node_cost(width) + (costs.edge + costs.visibility * float(survey.count)) * width;
     return packet_cost <= survey.pixel_cost;
 }
 

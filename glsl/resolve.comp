@@ -3,6 +3,7 @@
 // A light's visibility from what its views found occluded: 0 umbra … 1 lit; 0 where the surface faces
 // away from the whole light or lies behind it; NaN where there is no surface.
 #include "pass.glsl"
+#include "depth.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -16,9 +17,10 @@ layout(binding = 5, scalar) writeonly buffer Visibility { float visibility[]; };
 // Whether any part of the light is in front of the surface, and the surface in front of the light.
 bool faces_light(Light light, vec3 position, vec3 normal) {
     vec3 to_point = position - light.center;
-    vec2 along = abs(vec2(dot(normal, light.u), dot(normal, light.v))) * light.half_size;
-    float reach = light.round != 0u ? length(along) : along.x + along.y;
-    return dot(to_point, light.n) > 0.0 && reach > dot(normal, to_point);
+    precise vec2 along = abs(vec2(dot_exact(normal, light.u), dot_exact(normal, light.v))) * light.half_size;
+    precise float square = along.x * along.x + along.y * along.y;
+    precise float reach = light.round != 0u ? sqrt(square) : along.x + along.y;
+    return dot_exact(to_point, light.n) > 0.0 && reach > dot_exact(normal, to_point);
 }
 
 void main() {

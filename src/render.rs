@@ -141,13 +141,26 @@ impl Renderer {
     /// A Vulkan call failed, or the driver ended a traversal before it was finished.
     pub fn render(&mut self) -> Result<Frame> {
         self.recorder.begin()?;
-        self.record()?;
+        self.record(None)?;
         let timings = self.recorder.submit_and_wait()?;
         self.check_finished()?;
         let plan = self.plan.clone();
         self.retained = true;
         self.plan = crate::plan::plan(&self.shot, self.options.outputs, &self.gpu.limits, true)?;
         Ok(Frame { timings, plan })
+    }
+
+    /// Renders a frame of which one view alone is left, so that what the views share (map, MSSM, kernels, lists,
+    /// occlusion) can be read as that view leaves it. The next frame draws every map anew.
+    ///
+    /// # Errors
+    /// As for [`Self::render`].
+    pub fn render_view(&mut self, view: u32) -> Result<()> {
+        self.invalidate()?;
+        self.recorder.begin()?;
+        self.record(Some(view))?;
+        self.recorder.submit_and_wait()?;
+        self.check_finished()
     }
 
     /// A kernel can be larger than the driver lets a loop run; then the picture is wrong.
@@ -165,7 +178,8 @@ impl Renderer {
         )))
     }
 
-    fn record(&mut self) -> Result<()> {
+    /// `only`: the view to which the frame is limited.
+    fn record(&mut self, only: Option<u32>) -> Result<()> {
         let (plan, resources, recorder) = (&self.plan, &self.resources, &mut self.recorder);
         let frame = Push::default();
         let colors = ["position_world", "normal_world", "albedo"].map(|name| resources.image(name));
@@ -194,7 +208,8 @@ impl Renderer {
             if light.accumulates() {
                 recorder.clear("clear_occlusion", resources.buffer("occlusion")?);
             }
-            for (view, planned) in (light.light.view_first..).zip(&light.views) {
+            let views = (light.light.view_first..).zip(&light.views);
+            for (view, planned) in views.filter(|(view, _)| only.is_none_or(|only| only == *view)) {
                 let passes = &self.views[&(planned.variant, light.recipe.clone())];
                 if !retained {
                     passes.record_map(recorder, plan, resources, view)?;

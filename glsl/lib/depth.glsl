@@ -14,9 +14,16 @@ struct Receiver {
     vec2 b;
 };
 
+// `dot` in a stated order of summation: integers are decided on what follows from it, and passes that
+// compute it anew must come to the same bits.
+float dot_exact(vec3 a, vec3 b) {
+    precise float sum = a.x * b.x + a.y * b.y + a.z * b.z;
+    return sum;
+}
+
 // A direction or relative position in the frame of the view's face.
 vec3 to_face(View view, vec3 world) {
-    return vec3(dot(world, view.right), dot(world, view.up), dot(world, view.forward));
+    return vec3(dot_exact(world, view.right), dot_exact(world, view.up), dot_exact(world, view.forward));
 }
 
 // The face that a receiver belongs to, from its position in the light's frame (any axis scales).
@@ -31,15 +38,17 @@ uint face_of(vec3 in_light, float reach) {
 // to the view's face, and at least a part of the sub-light is in front of it.
 // to_point: from the sub-light's centre; normal: of the visible side.
 bool in_view(View view, vec3 to_point, vec3 normal) {
-    vec3 in_light = vec3(dot(to_point, view.light_u) * view.half_size.x * view.half_size.x,
-                         dot(to_point, view.light_v) * view.half_size.y * view.half_size.y,
-                         dot(to_point, view.light_n));
+    precise vec3 in_light = vec3(dot_exact(to_point, view.light_u) * view.half_size.x * view.half_size.x,
+                                 dot_exact(to_point, view.light_v) * view.half_size.y * view.half_size.y,
+                                 dot_exact(to_point, view.light_n));
     in_light.xy /= view.half_size;
     if (!(in_light.z > 0.0)) return false;
     if (face_of(in_light, view.reach) != view.face) return false;
-    vec2 along = vec2(dot(normal, view.light_u), dot(normal, view.light_v)) * view.half_size * view.half_size;
-    vec2 reach = max(along * view.extent.xy, along * view.extent.zw);
-    return reach.x + reach.y > dot(normal, to_point);
+    precise vec2 along = vec2(dot_exact(normal, view.light_u), dot_exact(normal, view.light_v)) * view.half_size
+                       * view.half_size;
+    precise vec2 reach = max(along * view.extent.xy, along * view.extent.zw);
+    precise float sum = reach.x + reach.y;
+    return sum > dot_exact(normal, to_point);
 }
 
 Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
@@ -53,7 +62,7 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     precise float d = fit.near * inverse_z;
 
     vec3 n = to_face(view, normal);
-    precise vec2 slope = abs(n.xy) * fit.near / (fit.focal * max(abs(dot(n, p)), 1e-30));
+    precise vec2 slope = abs(n.xy) * fit.near / (fit.focal * max(abs(dot_exact(n, p)), 1e-30));
     precise float slope_bias = min((slope.x + slope.y) * view.bias, BIAS_SLOPE_MAX * d);
     precise vec3 magnitude = abs(to_point) + abs(view.center);
     precise float rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * inverse_z);
@@ -64,19 +73,20 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     receiver.biased = biased;
     precise vec2 ku = vec2(fit.near / (fit.focal.x * view.half_size.x), 0.0);
     precise vec2 kv = vec2(0.0, fit.near / (fit.focal.y * view.half_size.y));
-    receiver.b = vec2(0.0);
+    precise vec2 b = vec2(0.0);
     if (OBLIQUE) {
-        vec3 g = p * inverse_z;
+        precise vec3 g = p * inverse_z;
         vec3 m = to_face(view, view.light_n);
         vec3 lu = to_face(view, view.light_u);
         vec3 lv = to_face(view, view.light_v);
-        float mg = dot(m, g);
-        ku = fit.near * (lu.xy - m.xy * (dot(lu, g) / mg)) / fit.focal;
-        kv = fit.near * (lv.xy - m.xy * (dot(lv, g) / mg)) / fit.focal;
-        receiver.b = -d * (m.xy / fit.focal) / mg;
+        float mg = dot_exact(m, g);
+        ku = fit.near * (lu.xy - m.xy * (dot_exact(lu, g) / mg)) / fit.focal;
+        kv = fit.near * (lv.xy - m.xy * (dot_exact(lv, g) / mg)) / fit.focal;
+        b = -d * (m.xy / fit.focal) / mg;
     }
     receiver.ku = ku;
     receiver.kv = kv;
+    receiver.b = b;
     return receiver;
 }
 

@@ -1,0 +1,32 @@
+//! A light's visibility from what its views found hidden: twin of `resolve.comp`.
+
+use glam::{Vec2, Vec3};
+
+use crate::shared::Light;
+
+/// 0 umbra … 1 lit; 0 where the surface faces away from the whole light or lies behind it.
+///
+/// `hidden`: sum over the light's views of what they hide, each weighed by its `weight`.
+pub fn visibility(light: &Light, position: Vec3, normal: Vec3, hidden: f64) -> f64 {
+    if !faces_light(light, position, normal) {
+        return 0.0;
+    }
+    if light.view_count == 0 {
+        return 1.0;
+    }
+    (1.0 - hidden / f64::from(light.weight_sum)).clamp(0.0, 1.0)
+}
+
+/// Whether any part of the light is in front of the surface, and the surface in front of the light: a decision,
+/// taken in f32 as the shader takes it.
+fn faces_light(light: &Light, position: Vec3, normal: Vec3) -> bool {
+    let to_point = position - Vec3::from(light.center);
+    let along = Vec2::new(normal.dot(light.u.into()), normal.dot(light.v.into())).abs()
+        * Vec2::from(light.half_size);
+    let reach = if light.round != 0 {
+        along.length()
+    } else {
+        along.x + along.y
+    };
+    to_point.dot(light.n.into()) > 0.0 && reach > normal.dot(to_point)
+}

@@ -1,0 +1,131 @@
+//! A device under validation, and what each view of a shot leaves behind on it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::Vec3;
+use halfshade::gpu::{Gpu, Options};
+use halfshade::plan::{Outputs, ViewPlan};
+use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
+use halfshade::shared::{Counters, Fit, Kernel, Lists, Packet};
+use halfshade::shot::{Overrides, Shot};
+
+/// [pixel] Width and height of every image.
+pub const SIZE: u32 = 128;
+/// [texel] Width and height of every shadow map.
+pub const MAP: u32 = 256;
+
+/// Runs `test` under the validation layer. Any message of it is a failure, the last ones included that come
+/// when the device is destroyed.
+pub fn with_device(test: impl FnOnce(&Arc<Gpu>)) {
+    let options = Options {
+        validate: true,
+        ..Options::default()
+    };
+    let gpu = Gpu::open(&options).expect("a device and the validation layer");
+    let messages = gpu.validation_messages();
+    test(&gpu);
+    assert_eq!(Arc::strong_count(&gpu), 1, "something still lives on it");
+    drop(gpu);
+    let messages = messages.lock().expect("nothing panicked");
+    assert!(messages.is_empty(), "{}", messages.join("\n"));
+}
+
+/// A shot of `scenes/`, small.
+pub fn shot(scene: &str) -> Shot {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let overrides = Overrides {
+        size: Some((SIZE, SIZE)),
+        ..Overrides::default()
+    };
+    let mut shot = Shot::load(&folder.join(format!("{scene}.json")), &overrides)
+        .expect("the scenes can be loaded");
+    shot.settings.map = MAP;
+    shot.settings.counters = true;
+    shot
+}
+
+pub fn renderer(gpu: &Arc<Gpu>, shot: &Shot) -> Renderer {
+    let options = RenderOptions {
+        outputs: Outputs { picture: false },
+        costs: DEFAULT_COSTS,
+        exposure: DEFAULT_EXPOSURE,
+    };
+    Renderer::new(gpu, shot, options).expect("the scenes can be rendered")
+}
+
+/// What the camera sees in a pixel.
+#[derive(Clone, Copy)]
+pub struct Point {
+    pub position: Vec3,
+    pub normal: Vec3,
+}
+
+/// The g-buffer, row by row; None where there is no surface.
+pub fn points(renderer: &Renderer) -> Vec<Option<Point>> {
+    let count = (4 * SIZE * SIZE) as usize;
+    let read = |name| -> Vec<f32> { renderer.read_image(name, count).expect(name) };
+    let (positions, normals) = (read("position_world"), read("normal_world"));
+    let pixels = positions.chunks_exact(4).zip(normals.chunks_exact(4));
+    pixels
+        .map(|(position, normal)| {
+            (position[3] > 0.0).then(|| Point {
+                position: Vec3::from_slice(position),
+                normal: Vec3::from_slice(normal),
+            })
+        })
+        .collect()
+}
+
+/// What a view leaves behind.
+pub struct Traces {
+    pub planned: ViewPlan,
+    pub fit: Fit,
+    pub map: Vec<f32>,
+    /// All levels, one after the other.
+    pub mssm: Vec<[f32; 2]>,
+    pub kernels: Vec<Kernel>,
+    pub packets: Vec<Packet>,
+    pub pixels: Vec<u32>,
+    pub occlusion: Vec<f32>,
+    /// Before and after it.
+    pub counters: [Counters; 2],
+}
+
+/// Renders one view alone and reads what it leaves behind.
+pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
+    let before = renderer.counters().expect("counters");
+    renderer.render_view(view).expect("a view can be rendered");
+    let plan = renderer.plan();
+    let planned = plan.views().nth(view as usize).expect("it is planned");
+    let pixels = (SIZE * SIZE) as usize;
+    let texels = (MAP * MAP) as usize;
+    let lists: Vec<Lists> = renderer
+        .read_buffer("lists", plan.views().count())
+        .expect("lists");
+    let lists = lists[view as usize];
+    Traces {
+        planned: planned.clone(),
+        fit: renderer.fits().expect("fits")[view as usize],
+        map: renderer
+            .read_image("shadow_map", texels)
+            .expect("shadow_map"),
+        mssm: renderer
+            .read_image("mssm", texels * plan.levels as usize)
+            .expect("mssm"),
+        kernels: renderer.read_buffer("kernels", pixels).expect("kernels"),
+        packets: listed(renderer, "packets", lists.packet_count),
+        pixels: listed(renderer, "pixels", lists.pixel_count),
+        occlusion: renderer
+            .read_buffer("occlusion", pixels)
+            .expect("occlusion"),
+        counters: [before, renderer.counters().expect("counters")],
+    }
+}
+
+fn listed<T: bytemuck::Pod>(renderer: &Renderer, name: &str, count: u32) -> Vec<T> {
+    if count == 0 {
+        return Vec::new();
+    }
+    renderer.read_buffer(name, count as usize).expect(name)
+}

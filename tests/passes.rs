@@ -1,0 +1,321 @@
+//! The algorithmic passes against their scalar twins, in every view of every scene: the twins are fed with
+//! the map, the positions and the fit that the device found, and must come to the same.
+
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use common::{MAP, Point, SIZE, Traces, points, renderer, shot, traces, with_device};
+use glam::{DVec3, Vec3};
+use halfshade::cpu::classify::{Classified, Decision, classify};
+use halfshade::cpu::contour::ShadowMap;
+use halfshade::cpu::depth::{Receiver, in_view, project};
+use halfshade::cpu::kernels::{kernel_of, unpacked};
+use halfshade::cpu::mssm::Mssm;
+use halfshade::cpu::radial::SubLight;
+use halfshade::cpu::resolve;
+use halfshade::gpu::Gpu;
+use halfshade::render::DEFAULT_COSTS;
+use halfshade::scene::LightShape;
+use halfshade::shared::{KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
+use halfshade::shot::{Leaf, Mapping, Shot};
+
+/// [visibility] The device sums some hundred areas in f32, each with a rounding error of a few 1e-7 of the
+/// light, and interpolates the sectors of discs.
+const TOLERANCE: f64 = 1e-4;
+/// [pixel] One in so many, in both directions, is also integrated over the whole map.
+const WHOLE_MAP_STEP: u32 = 13;
+
+/// A pixel that the view has to look at.
+type Seen = Option<Receiver>;
+
+fn receivers(traces: &Traces, points: &[Option<Point>]) -> Vec<Seen> {
+    let (view, oblique) = (&traces.planned.view, traces.planned.variant.oblique);
+    let receiver = |point: &Point| {
+        let to_point = point.position - Vec3::from(view.center);
+        in_view(view, to_point, point.normal)
+            .then(|| project(view, &traces.fit, oblique, to_point, point.normal))
+    };
+    points
+        .iter()
+        .map(|point| point.as_ref().and_then(receiver))
+        .collect()
+}
+
+fn check_mssm(traces: &Traces) -> Mssm {
+    let mssm = Mssm::new(MAP, &traces.map, traces.fit.level_count);
+    let bits = |bounds: &[f32; 2]| bounds.map(f32::to_bits);
+    for level in 0..traces.fit.level_count as usize {
+        let texels = (MAP * MAP) as usize;
+        let found = &traces.mssm[level * texels..(level + 1) * texels];
+        for (i, (found, wanted)) in found.iter().zip(mssm.level(level)).enumerate() {
+            assert_eq!(bits(found), bits(wanted), "level {level}, texel {i}");
+        }
+    }
+    mssm
+}
+
+/// The twin's kernels, equal to the device's in every pixel and bit.
+fn check_kernels(traces: &Traces, receivers: &[Seen], mssm: &Mssm) -> Vec<Kernel> {
+    let (view, oblique) = (&traces.planned.view, traces.planned.variant.oblique);
+    let mut statuses = [0u32; 4];
+    let mut kernels = Vec::new();
+    for (i, (receiver, found)) in receivers.iter().zip(&traces.kernels).enumerate() {
+        let none = Kernel {
+            status: KERNEL_NONE,
+            ..Kernel::default()
+        };
+        let wanted = receiver.map_or(none, |receiver| kernel_of(view, oblique, &receiver, mssm));
+        let pixel = (i as u32 % SIZE, i as u32 / SIZE);
+        assert_eq!(*found, wanted, "pixel {pixel:?}, {receiver:?}");
+        statuses[wanted.status as usize] += 1;
+        kernels.push(wanted);
+    }
+    let [before, after] = &traces.counters;
+    let counted = [
+        after.lit - before.lit,
+        after.umbra - before.umbra,
+        after.penumbra - before.penumbra,
+    ];
+    let wanted =
+        [KERNEL_LIT, KERNEL_UMBRA, KERNEL_PENUMBRA].map(|status| statuses[status as usize]);
+    assert_eq!(counted, wanted);
+    assert_eq!(after.pixels - before.pixels, wanted.iter().sum::<u32>());
+    kernels
+}
+
+/// Packets by their position in the grid, with their penumbra pixels.
+fn packets_of(shot: &Shot, kernels: &[Kernel]) -> BTreeMap<u32, Vec<u32>> {
+    let (width, height) = shot.settings.packet;
+    let columns = SIZE.div_ceil(width);
+    let mut packets = BTreeMap::new();
+    for pixel in (0..SIZE * SIZE).filter(|&i| kernels[i as usize].status == KERNEL_PENUMBRA) {
+        let packet = pixel / SIZE / height * columns + pixel % SIZE / width;
+        packets.entry(packet).or_insert_with(Vec::new).push(pixel);
+    }
+    packets
+}
+
+/// The device's lists are what the twin decides; returns how many packets the twin leaves undecided, of
+/// how many.
+fn check_lists(shot: &Shot, traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> [usize; 2] {
+    let reprocess = shot.settings.leaf == Leaf::Reprocess;
+    let pixelwise = shot.settings.packet == (1, 1);
+    let packets = packets_of(shot, kernels);
+    let mut coherent: BTreeMap<u32, _> = BTreeMap::new();
+    for packet in &traces.packets {
+        assert!(
+            coherent.insert(packet.index, *packet).is_none(),
+            "listed twice"
+        );
+    }
+    let mut pixels: BTreeSet<u32> = traces.pixels.iter().copied().collect();
+    assert_eq!(pixels.len(), traces.pixels.len(), "a pixel is listed twice");
+    let (mut undecided, mut reprocessed) = (0, 0);
+    for (&index, members) in &packets {
+        let surveyed: Vec<(Kernel, Receiver)> = members
+            .iter()
+            .filter_map(|&i| seen[i as usize].map(|receiver| (kernels[i as usize], receiver)))
+            .collect();
+        let Classified { packet, decision } =
+            classify(index, &surveyed, &DEFAULT_COSTS, reprocess).expect("it has pixels");
+        undecided += usize::from(decision == Decision::Either && !pixelwise);
+        let single = members.iter().filter(|&i| pixels.remove(i)).count();
+        match coherent.remove(&index) {
+            Some(found) => {
+                assert_ne!(decision, Decision::Incoherent, "{packet:?}");
+                assert_eq!(found, packet);
+                // The traversal may hand the whole packet on to the list of pixels.
+                assert!(single == 0 || reprocess && single == members.len());
+                reprocessed += u32::from(single > 0);
+            }
+            None => {
+                assert!(decision != Decision::Coherent || pixelwise, "{packet:?}");
+                assert_eq!(single, members.len(), "{packet:?}");
+            }
+        }
+    }
+    assert!(
+        coherent.is_empty() && pixels.is_empty(),
+        "listed without penumbra pixels"
+    );
+    let [before, after] = &traces.counters;
+    assert_eq!(after.packets - before.packets, packets.len() as u32);
+    assert_eq!(
+        after.coherent_packets - before.coherent_packets,
+        traces.packets.len() as u32
+    );
+    assert_eq!(
+        after.reprocessed_packets - before.reprocessed_packets,
+        reprocessed
+    );
+    [undecided, packets.len()]
+}
+
+/// [0, 1] What the view hides from each pixel, by the twin; and the largest difference from the device.
+fn check_integration(traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> (Vec<f64>, f64) {
+    let View { weight, area, .. } = traces.planned.view;
+    let map = ShadowMap {
+        size: MAP as i32,
+        depths: &traces.map,
+    };
+    let round = traces.planned.variant.round;
+    let light = SubLight::new(&traces.planned.view, &traces.fit, round, map);
+    assert!((light.area() - f64::from(area)).abs() < 1e-5, "area {area}");
+    let mut largest: f64 = 0.0;
+    let mut shares = Vec::new();
+    for (i, (receiver, kernel)) in seen.iter().zip(kernels).enumerate() {
+        let share = match (receiver, kernel.status) {
+            (Some(receiver), KERNEL_PENUMBRA) => {
+                light.hidden_share(receiver, unpacked(kernel.first), unpacked(kernel.last))
+            }
+            (Some(_), KERNEL_UMBRA) => 1.0,
+            _ => 0.0,
+        };
+        let found = f64::from(traces.occlusion[i]) / f64::from(weight);
+        let pixel = (i as u32 % SIZE, i as u32 / SIZE);
+        assert!(
+            (found - share).abs() < TOLERANCE,
+            "pixel {pixel:?}: {found} of the light hidden, by the twin {share}; {kernel:?}, {receiver:?}"
+        );
+        largest = largest.max((found - share).abs());
+        // No kernel, lit or umbra pixel may have lost an occluder to what was cut away.
+        if let Some(receiver) = receiver
+            && pixel.0 % WHOLE_MAP_STEP == 0
+            && pixel.1 % WHOLE_MAP_STEP == 0
+        {
+            let whole = light.hidden_share(receiver, [0; 2], [MAP as i32 - 2; 2]);
+            assert!(
+                (whole - share).abs() < TOLERANCE,
+                "pixel {pixel:?}: the whole map hides {whole}, its kernel {share}; {kernel:?}, {receiver:?}"
+            );
+        }
+        shares.push(share);
+    }
+    (shares, largest)
+}
+
+/// Every view's passes and the sum of the views.
+fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
+    let mut renderer = renderer(gpu, shot);
+    let light = renderer.plan().lights[0].light;
+    let mut hidden = vec![0.0; (SIZE * SIZE) as usize];
+    let mut largest: f64 = 0.0;
+    let mut undecided = [0; 2];
+    for index in 0..light.view_count {
+        let traces = traces(&mut renderer, index);
+        if traces.fit.level_count == 0 {
+            assert!(traces.occlusion.iter().all(|&occluded| occluded == 0.0));
+            continue;
+        }
+        let seen = receivers(&traces, &points(&renderer));
+        let mssm = check_mssm(&traces);
+        let kernels = check_kernels(&traces, &seen, &mssm);
+        let counted = check_lists(shot, &traces, &seen, &kernels);
+        undecided = [undecided[0] + counted[0], undecided[1] + counted[1]];
+        let (shares, difference) = check_integration(&traces, &seen, &kernels);
+        largest = largest.max(difference);
+        for (sum, share) in hidden.iter_mut().zip(shares) {
+            *sum += f64::from(traces.planned.view.weight) * share;
+        }
+    }
+    renderer.render().expect("the scenes can be rendered");
+    let found = renderer.visibility(0).expect("visibility");
+    let mut summed: f64 = 0.0;
+    for (i, (point, &found)) in points(&renderer).iter().zip(&found).enumerate() {
+        let Some(Point { position, normal }) = *point else {
+            assert!(found.is_nan());
+            continue;
+        };
+        let wanted = resolve::visibility(&light, position, normal, hidden[i]);
+        summed = summed.max((f64::from(found) - wanted).abs());
+        assert!(
+            (f64::from(found) - wanted).abs() < TOLERANCE,
+            "{name}, pixel {i}: visibility {found}, by the twin {wanted}"
+        );
+    }
+    println!(
+        "{name}, split {}, {} views: largest difference {largest:.1e} in a view, {summed:.1e} in their sum; \
+         {} of {} packets undecided",
+        shot.settings.split, light.view_count, undecided[0], undecided[1]
+    );
+    // Decisions that rounding could turn over are rare: less than one in a thousand.
+    assert!(1000 * undecided[0] <= undecided[1], "{name}: {undecided:?}");
+}
+
+/// The scene as it is, with packets of 4×4 and the leaf rule `per-pixel`, in one part and in four.
+fn check_scene(name: &str) {
+    with_device(|gpu| {
+        let mut shot = shot(name);
+        for split in [1, 2] {
+            shot.settings.split = split;
+            check(gpu, name, &shot);
+        }
+    });
+}
+
+#[test]
+fn colonnade() {
+    check_scene("colonnade");
+}
+
+#[test]
+fn grid() {
+    check_scene("grid");
+}
+
+#[test]
+fn knot() {
+    check_scene("knot");
+}
+
+#[test]
+fn plate() {
+    check_scene("plate");
+}
+
+#[test]
+fn staircase() {
+    check_scene("staircase");
+}
+
+#[test]
+fn tree() {
+    check_scene("tree");
+}
+
+#[test]
+fn the_side_faces_of_a_disc() {
+    with_device(|gpu| {
+        let mut shot = shot("grid");
+        shot.lights[0].shape = LightShape::Disc {
+            normal: DVec3::new(0.1, -1.0, 0.2),
+            radius: 0.8,
+        };
+        shot.settings.split = 2;
+        check(gpu, "grid under a disc", &shot);
+    });
+}
+
+#[test]
+fn other_packets_leaf_rules_and_mappings() {
+    with_device(|gpu| {
+        let mut shot = shot("staircase");
+        shot.settings.split = 1;
+        for (packet, leaf, mapping) in [
+            ((1, 1), Leaf::PerPixel, Mapping::Serial),
+            ((5, 3), Leaf::Reprocess, Mapping::Serial),
+            ((8, 4), Leaf::Reprocess, Mapping::Lanes),
+        ] {
+            shot.settings.packet = packet;
+            shot.settings.leaf = leaf;
+            shot.settings.mapping = mapping;
+            check(
+                gpu,
+                &format!("staircase, {packet:?} {leaf:?} {mapping:?}"),
+                &shot,
+            );
+        }
+    });
+}
