@@ -10,6 +10,7 @@ pub mod calibration;
 pub mod compare;
 pub mod devices;
 pub mod plan;
+mod progress;
 pub mod reference;
 pub mod render;
 pub mod shot_args;
@@ -43,6 +44,15 @@ pub fn print_notes(shot: &Shot) {
         // Nobody is left to tell when stderr is closed.
         let _ = writeln!(io::stderr(), "note: {note}");
     }
+}
+
+/// An error as one line, whatever a driver or a file name has put into it.
+pub fn print_error(error: &Error) {
+    let text = error.to_string();
+    let words: Vec<&str> = text.split(char::is_control).map(str::trim).collect();
+    let text = words.join(" ");
+    // Nobody is left to tell when stderr is closed.
+    let _ = writeln!(io::stderr(), "halfshade: {}", text.trim_end());
 }
 
 /// The value of `--size`: `WxH` in pixels, each from 1 to 32768.

@@ -38,6 +38,8 @@ pub struct Plan {
     pub levels: u32,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
+    /// [pixel] Width and height of a packet.
+    pub packet: (u32, u32),
     /// The scene has textures that the frame needs.
     pub textured: bool,
     /// The scene has alpha-masked triangles.
@@ -129,6 +131,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
         outputs,
         levels: 0,
         map: 0,
+        packet: shot.settings.packet,
         textured: !shot.scene.textures.is_empty() && (outputs.picture || shot.scene.has_masked()),
         masked: shot.scene.has_masked(),
         passes: Vec::new(),
@@ -243,26 +246,27 @@ impl Plan {
         }
         for light in &self.lights {
             let count = light.views.len() as u32;
-            let drawn = if retained { 0 } else { count };
             add("clear_occlusion", u32::from(light.accumulates()));
-            for name in ["receivers", "casters", "fit", "shadow_map"] {
-                add(name, drawn);
-            }
-            add(
-                "mssm",
-                if light.recipe.mssm {
-                    drawn * self.levels
-                } else {
-                    0
-                },
-            );
-            for stage in &light.recipe.stages {
-                add(stage.name, count);
+            for (name, times) in self.view_passes(light, retained) {
+                add(name, count * times);
             }
             add("resolve", 1);
         }
         add("shade", u32::from(self.outputs.picture));
         self.passes = passes;
+    }
+
+    /// What is recorded for each view of a light, in this order, and how often.
+    fn view_passes(&self, light: &LightPlan, retained: bool) -> Vec<(&'static str, u32)> {
+        let mut passes = Vec::new();
+        if !retained {
+            passes.extend(["receivers", "casters", "fit", "shadow_map"].map(|name| (name, 1)));
+            if light.recipe.mssm {
+                passes.push(("mssm", self.levels));
+            }
+        }
+        passes.extend(light.recipe.stages.iter().map(|stage| (stage.name, 1)));
+        passes
     }
 
     fn list_resources(&mut self, shot: &Shot) {

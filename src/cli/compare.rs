@@ -11,6 +11,9 @@ use halfshade::{Error, Result};
 use super::print;
 
 /// Compares an image with its reference: OpenEXR visibility by error metrics, PNG pictures by FLIP.
+///
+/// Errors are image − reference, in visibility from 0 (umbra) to 1 (lit). Pixels without a surface (NaN)
+/// in either image are left out and counted.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The image to judge (.exr or .png)

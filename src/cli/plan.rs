@@ -7,6 +7,8 @@ use super::calibration::Calibration;
 use super::shot_args::{DeviceArgs, ShotArgs};
 
 /// Prints the passes that a shot needs, with sizes and memory, and what is left out and why.
+///
+/// Renders nothing. Sizes are pixels and texels, memory is bytes; the device's limits count.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]

@@ -10,9 +10,8 @@ use halfshade::image::{check_writable, write_exr};
 use halfshade::shot::{Overrides, Shot};
 
 use halfshade::{Error, Result};
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{parse_size, print, print_notes};
+use super::{parse_size, print, print_notes, progress};
 
 /// Traces the true visibility of a light with rays, on the CPU.
 ///
@@ -25,13 +24,13 @@ pub struct Args {
     /// The image to write
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
-    /// Shadow rays per pixel, rounded up to a multiple of 8
-    #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=65536))]
+    /// Shadow rays per pixel, 16 to 65536, rounded up to a multiple of 8
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=65536))]
     samples: u32,
-    /// Another seed gives independent noise
-    #[arg(long, default_value_t = 0)]
+    /// Another seed gives independent noise, the same seed the same image
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
-    /// Size of the image instead of the shot's
+    /// Size of the image in pixels, each side 1 to 32768 [default: the shot's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Which of the shot's lights, counted from 0
@@ -48,7 +47,7 @@ pub fn run(args: &Args) -> Result<()> {
         size: args.size,
         ..Overrides::default()
     };
-    let shot = Shot::load(&args.shot, &overrides)?;
+    let shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
     print_notes(&shot);
     let cancel = Arc::new(AtomicBool::new(false));
     let on_interrupt = Arc::clone(&cancel);
@@ -59,10 +58,9 @@ pub fn run(args: &Args) -> Result<()> {
         samples: args.samples,
         seed: args.seed,
     };
-    // Drawn on stderr, and only where that is a terminal.
-    let bar = ProgressBar::new(1000).with_style(style());
-    let progress = |share: f64| bar.set_position((share * 1000.0) as u64);
-    let traced = trace(&shot, args.light, options, &progress, &cancel);
+    let bar = progress::bar("tracing", 1000);
+    let advance = |share: f64| bar.set_position((share * 1000.0) as u64);
+    let traced = trace(&shot, args.light, options, &advance, &cancel);
     bar.finish_and_clear();
     let image = traced.map_err(|error| match cancel.load(Ordering::Relaxed) {
         true => Error::Invalid(format!(
@@ -78,11 +76,6 @@ pub fn run(args: &Args) -> Result<()> {
     ];
     write_exr(&args.output, &channels)?;
     print(&summary(args, &image, start.elapsed().as_secs_f64()))
-}
-
-fn style() -> ProgressStyle {
-    let template = "tracing {wide_bar} {percent:>3} % {eta:>6} left";
-    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 fn summary(args: &Args, image: &ReferenceImage, seconds: f64) -> String {

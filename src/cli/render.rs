@@ -1,6 +1,6 @@
 //! `halfshade render`: the main job.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfshade::gpu::Gpu;
@@ -10,13 +10,16 @@ use halfshade::render::{DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use halfshade::shared::Exposure;
 use halfshade::shot::Shot;
 use halfshade::{Error, Result};
-use indicatif::ProgressBar;
 
 use super::calibration::Calibration;
+use super::progress;
 use super::shot_args::{DeviceArgs, ShotArgs};
 use super::stats::Stats;
 
 /// Renders a shot: a shaded picture, the visibility of each light, and what it cost.
+///
+/// Visibility is the share of the light's area that the visible surface sees, 0 (umbra) to 1 (lit), and
+/// NaN where there is no surface. Prints a line with the size, the device, the time and the memory.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -26,19 +29,19 @@ pub struct Args {
     /// The shaded picture to write
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
-    /// The visibility to write: channel Y, or one channel per light (Y0, Y1, …)
+    /// The visibility to write, 32-bit float: channel Y, or with several lights one each (Y0, Y1, …)
     #[arg(long, value_name = "FILE.exr")]
     visibility: Option<PathBuf>,
-    /// Write only this light's visibility, counted from 0
+    /// Write only this light's visibility, counted from 0, as channel Y [default: all lights]
     #[arg(long, value_name = "N")]
     light: Option<usize>,
-    /// Times, memory and, with --counters, counts to write
+    /// Times in ms, memory in bytes and, with --counters, counts to write
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
-    /// Timed frames, after one to warm up; each draws its shadow maps anew
+    /// Timed frames, 1 to 10000, after one to warm up; each draws its shadow maps anew
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10000))]
     repeat: u32,
-    /// Factor on the picture's brightness, as a power of two
+    /// Brightness of the picture in stops: each doubles it
     #[arg(
         long,
         value_name = "EV",
@@ -46,38 +49,62 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     exposure: f32,
-    /// Constant light from everywhere, so that umbrae are dark rather than black
+    /// Constant light from everywhere, 0 or more, so that umbrae are dark rather than black
     #[arg(long, value_name = "RADIANCE", default_value_t = DEFAULT_EXPOSURE.ambient)]
     ambient: f32,
 }
 
+/// What a run has made. It is written when the device is closed and the validation layer has had its
+/// last word.
+struct Products {
+    /// RGB8
+    picture: Option<Vec<u8>>,
+    visibility: Option<Vec<(String, Plane)>>,
+    size: (u32, u32),
+    stats: Stats,
+}
+
 /// # Errors
-/// When the shot can't be read or rendered or a file can't be written; then no file is left.
+/// When the shot can't be read or rendered or a file can't be written; then no unfinished file is left.
 pub fn run(args: &Args) -> Result<()> {
-    if args.output.is_none() && args.visibility.is_none() && args.stats.is_none() {
-        return Err(Error::Invalid(
-            "nothing to write: give -o, --visibility or --stats".into(),
-        ));
-    }
-    let files = [&args.output, &args.visibility, &args.stats];
-    files
-        .into_iter()
-        .flatten()
-        .try_for_each(|file| check_writable(file))?;
+    check_files(args)?;
     if !args.exposure.is_finite() || !args.ambient.is_finite() || args.ambient < 0.0 {
         return Err(Error::Invalid(
             "--exposure and --ambient must be finite, --ambient not negative".into(),
         ));
     }
-    args.device.with_device(|gpu| render(args, gpu))
+    let products = args.device.with_device(|gpu| render(args, gpu))?;
+    products.write(args)?;
+    super::print(&format!("{}\n", products.stats.summary()))
 }
 
-fn render(args: &Args, gpu: &Arc<Gpu>) -> Result<()> {
+/// Refuses, before any work, files that could not be written.
+fn check_files(args: &Args) -> Result<()> {
+    let files = [&args.output, &args.visibility, &args.stats];
+    let files: Vec<&PathBuf> = files.into_iter().flatten().collect();
+    if files.is_empty() {
+        return Err(Error::Invalid(
+            "nothing to write: give -o, --visibility or --stats".into(),
+        ));
+    }
+    for (index, file) in files.iter().enumerate() {
+        if files[..index].contains(file) && file.as_path() != Path::new("/dev/null") {
+            return Err(Error::Invalid(format!(
+                "{} is named twice; each output needs a file of its own",
+                file.display()
+            )));
+        }
+        check_writable(file)?;
+    }
+    Ok(())
+}
+
+fn render(args: &Args, gpu: &Arc<Gpu>) -> Result<Products> {
     let calibration = Calibration::of(&gpu.info);
     let shot = args.shot.load(&calibration)?;
     if let Some(light) = args.light.filter(|&light| light >= shot.lights.len()) {
         return Err(Error::Invalid(format!(
-            "there is no light {light}: the shot has {}",
+            "there is no light {light}: the shot has {}, counted from 0",
             shot.lights.len()
         )));
     }
@@ -92,20 +119,16 @@ fn render(args: &Args, gpu: &Arc<Gpu>) -> Result<()> {
             light_count: 0,
         },
     };
-    let mut renderer = Renderer::new(gpu, &shot, options)?;
+    let mut renderer = progress::spin("building pipelines", || Renderer::new(gpu, &shot, options))?;
     let stats = timed_frames(args, gpu, &shot, &mut renderer)?;
-    if let Some(file) = &args.output {
-        write_png(file, shot.width, shot.height, &rgb_of(&renderer.picture()?))?;
-    }
-    if let Some(file) = &args.visibility {
-        write_visibility(file, args.light, &shot, &renderer)?;
-    }
-    if let Some(file) = &args.stats {
-        let text = serde_json::to_string_pretty(&stats)
-            .map_err(|error| Error::Invalid(error.to_string()))?;
-        write_atomically(file, |out| writeln!(out, "{text}"))?;
-    }
-    super::print(&format!("{}\n", stats.summary()))
+    let picture = args.output.as_ref().map(|_| renderer.picture());
+    let visibility = (args.visibility.as_ref()).map(|_| planes(args.light, &shot, &renderer));
+    Ok(Products {
+        picture: picture.transpose()?.map(|rgba| rgb_of(&rgba)),
+        visibility: visibility.transpose()?,
+        size: (shot.width, shot.height),
+        stats,
+    })
 }
 
 fn timed_frames(
@@ -117,49 +140,58 @@ fn timed_frames(
     // Without timing, the first frame is the only one.
     let warm_up = args.stats.is_some() || args.repeat > 1;
     let mut frames = Vec::new();
-    let bar = ProgressBar::new(u64::from(args.repeat));
-    for round in 0..args.repeat + u32::from(warm_up) {
+    let rounds = args.repeat + u32::from(warm_up);
+    let bar = progress::bar("rendering", u64::from(rounds));
+    for round in 0..rounds {
         renderer.invalidate()?;
         let before = renderer.counters()?;
         let frame = renderer.render()?;
         if round > 0 || !warm_up {
             frames.push((frame, before));
-            bar.inc(1);
         }
+        bar.inc(1);
     }
     bar.finish_and_clear();
     Stats::new(gpu, shot, renderer, &frames, args.shot.counters)
 }
 
-fn write_visibility(
-    file: &std::path::Path,
-    light: Option<usize>,
-    shot: &Shot,
-    renderer: &Renderer,
-) -> Result<()> {
+/// The visibility of one light or of all, by the name of its channel.
+fn planes(light: Option<usize>, shot: &Shot, renderer: &Renderer) -> Result<Vec<(String, Plane)>> {
     let lights: Vec<usize> =
         light.map_or_else(|| (0..shot.lights.len()).collect(), |light| vec![light]);
-    let mut planes = Vec::new();
-    for &light in &lights {
-        let name = if lights.len() == 1 {
-            "Y".to_owned()
+    let (width, height) = (shot.width as usize, shot.height as usize);
+    let alone = lights.len() == 1;
+    let plane = |light| {
+        let name = if alone {
+            "Y".into()
         } else {
             format!("Y{light}")
         };
-        planes.push((
-            name,
-            Plane::new(
-                shot.width as usize,
-                shot.height as usize,
-                renderer.visibility(light)?,
-            )?,
-        ));
+        let plane = Plane::new(width, height, renderer.visibility(light)?)?;
+        Ok((name, plane))
+    };
+    lights.into_iter().map(plane).collect()
+}
+
+impl Products {
+    fn write(&self, args: &Args) -> Result<()> {
+        if let (Some(file), Some(picture)) = (&args.output, &self.picture) {
+            write_png(file, self.size.0, self.size.1, picture)?;
+        }
+        if let (Some(file), Some(planes)) = (&args.visibility, &self.visibility) {
+            let channels: Vec<(&str, &Plane)> = planes
+                .iter()
+                .map(|(name, plane)| (name.as_str(), plane))
+                .collect();
+            write_exr(file, &channels)?;
+        }
+        if let Some(file) = &args.stats {
+            let text = serde_json::to_string_pretty(&self.stats)
+                .map_err(|error| Error::Invalid(error.to_string()))?;
+            write_atomically(file, |out| writeln!(out, "{text}"))?;
+        }
+        Ok(())
     }
-    let channels: Vec<(&str, &Plane)> = planes
-        .iter()
-        .map(|(name, plane)| (name.as_str(), plane))
-        .collect();
-    write_exr(file, &channels)
 }
 
 fn rgb_of(rgba: &[u8]) -> Vec<u8> {

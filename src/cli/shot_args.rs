@@ -8,7 +8,7 @@ use halfshade::shot::{Leaf, Mapping, Overrides, Settings, Shot, Technique};
 use halfshade::{Error, Result};
 
 use super::calibration::Calibration;
-use super::{parse_size, print_notes};
+use super::{parse_size, print_notes, progress};
 
 /// What to render and how.
 #[derive(Debug, clap::Args)]
@@ -18,22 +18,22 @@ pub struct ShotArgs {
     /// Which publication computes the visibility: packet-contour, pixel-contour or hard
     #[arg(long, value_name = "NAME", default_value_t = Technique::PacketContour)]
     technique: Technique,
-    /// Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path [default: calibrated]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    /// Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path [default: calibrated, else 4x4]
+    #[arg(long, value_name = "WxH", value_parser = parse_packet)]
     packet: Option<(u32, u32)>,
-    /// What a leaf does where a packet's pixels disagree: reprocess or per-pixel [default: calibrated]
+    /// What a leaf does where a packet's pixels disagree: reprocess or per-pixel [default: calibrated, else per-pixel]
     #[arg(long, value_name = "RULE")]
     leaf: Option<Leaf>,
-    /// How a packet maps to shader invocations: serial or lanes [default: calibrated]
+    /// How a packet maps to shader invocations: serial or lanes [default: calibrated, else serial]
     #[arg(long, value_name = "MAPPING")]
     mapping: Option<Mapping>,
-    /// Cut each light into N×N sub-lights, 1 to 16
+    /// Cut each light into N×N sub-lights, 1 to 16; 1 is fastest and leaks where occluders overlap
     #[arg(long, value_name = "N", default_value_t = 4)]
     split: u32,
-    /// Width of a shadow map in texels, 16 to 8192
+    /// Width and height of a shadow map in texels, 16 to 8192
     #[arg(long, value_name = "R", default_value_t = 512)]
     map: u32,
-    /// Bias in texels of the receiver's slope
+    /// Depth bias in texels of the receiver's slope, 0 or more
     #[arg(long, value_name = "TEXELS", default_value_t = 1.5)]
     bias: f32,
     /// Visit nodes whose back-projection misses the light as well, as the paper does
@@ -45,16 +45,16 @@ pub struct ShotArgs {
     /// Count pixels, packets, nodes and edges (takes time)
     #[arg(long)]
     pub counters: bool,
-    /// Size of the image instead of the shot's
+    /// Size of the image in pixels, each side 1 to 32768 [default: the shot's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Radius of the scene's own point and spot lights, in scene units
+    /// Make the scene's own point and spot lights discs of this radius, in scene units, 0 or more
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
     /// Which scene of the glTF, counted from 0 [default: the file's own]
     #[arg(long, value_name = "N")]
     scene: Option<usize>,
-    /// Which camera of the glTF, counted from 0
+    /// Which camera of the glTF, counted from 0; a shot file's own camera goes first [default: 0]
     #[arg(long, value_name = "N")]
     camera: Option<usize>,
 }
@@ -71,7 +71,7 @@ impl ShotArgs {
         // Flags are cheaper to check than scenes to load.
         let settings = self.settings(calibration);
         settings.validate()?;
-        let mut shot = Shot::load(&self.shot, &overrides)?;
+        let mut shot = progress::spin("loading", || Shot::load(&self.shot, &overrides))?;
         print_notes(&shot);
         shot.settings = settings;
         Ok(shot)
@@ -93,10 +93,18 @@ impl ShotArgs {
     }
 }
 
+/// The value of `--packet`; its range is checked with the other settings.
+fn parse_packet(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X', '×']);
+    sides
+        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)))
+        .ok_or_else(|| "a packet is written 4x4, each side from 1 to 8 pixels".to_owned())
+}
+
 /// Where to render.
 #[derive(Debug, clap::Args)]
 pub struct DeviceArgs {
-    /// A part of the device's name [default: discrete before integrated before CPU]
+    /// A part of the device's name as `halfshade devices` lists it [default: discrete before integrated before CPU]
     #[arg(long, value_name = "SUBSTRING")]
     device: Option<String>,
     /// Run under the Vulkan validation layer; any warning or error fails the run

@@ -4,58 +4,147 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::{LightPlan, Outcome, Plan};
 
+/// What only the device finds out, and leaves out then.
+const ON_DEVICE: [(&str, &str); 3] = [
+    ("triangles", "those that shadow nothing visible"),
+    ("views", "those without receivers or without casters"),
+    ("mssm levels", "those above a view's largest kernel"),
+];
+
+/// The faces of a view, by where they look in the light's frame.
+const FACES: [&str; 5] = ["front", "+u", "-u", "+v", "-v"];
+
 impl Display for Plan {
     fn fmt(&self, out: &mut Formatter) -> Result {
         let (width, height) = self.size;
+        let results = match self.outputs.picture {
+            true => "picture and visibility",
+            false => "visibility only",
+        };
+        writeln!(out, "image  {width}x{height} pixels, {results}")?;
         writeln!(
             out,
-            "image {width}x{height}, {} triangles, {} of them alpha-masked",
+            "scene  {} triangles, {} of them alpha-masked",
             self.frame.opaque_count + self.frame.masked_count,
             self.frame.masked_count
         )?;
         for light in &self.lights {
             self.write_light(out, light)?;
         }
-        writeln!(out, "\npasses                 recorded")?;
+        writeln!(out, "\npasses of a frame    recorded")?;
         for (name, count) in &self.passes {
-            writeln!(out, "  {name:<20} {count:>8}")?;
+            writeln!(out, "  {name:<18} {count:>8}")?;
         }
-        writeln!(out, "\nmemory                    bytes")?;
-        for (name, bytes) in &self.resources {
-            writeln!(out, "  {name:<16} {bytes:>12}")?;
+        writeln!(out, "\nmemory                      bytes")?;
+        let sum = ("sum", self.memory_bytes());
+        for &(name, bytes) in self.resources.iter().chain([&sum]) {
+            writeln!(out, "  {name:<17} {bytes:>13}  {:>10}", human(bytes))?;
         }
-        writeln!(out, "  {:<16} {:>12}", "sum", self.memory_bytes())?;
-        writeln!(out, "\nleft out")?;
-        for omission in &self.omissions {
-            writeln!(out, "  {}: {}", omission.what, omission.reason)?;
-        }
-        writeln!(
+        writeln!(out, "\nleft out, and why")?;
+        write_columns(
             out,
-            "  on the device, where it finds so: triangles that shadow nothing visible, views without"
+            (self.omissions.iter()).map(|omission| (&*omission.what, &*omission.reason)),
         )?;
-        writeln!(
-            out,
-            "  receivers or casters, mssm levels above a view's largest kernel"
-        )
+        writeln!(out, "\nleft out by the device, where it finds so")?;
+        write_columns(out, ON_DEVICE.into_iter())
     }
 }
 
 impl Plan {
     fn write_light(&self, out: &mut Formatter, light: &LightPlan) -> Result {
-        let faces = light.views.len() / light.part_count.max(1);
+        let [half_u, half_v] = light.light.half_size;
+        let shape = match (half_u == 0.0 && half_v == 0.0, light.light.round != 0) {
+            (true, _) => "point".to_owned(),
+            (_, true) => format!("disc of radius {half_u:.3}"),
+            _ => format!("rectangle of {:.3} x {:.3}", 2.0 * half_u, 2.0 * half_v),
+        };
+        write!(out, "\n{}: {shape}, ", light.name)?;
         match light.outcome {
-            Outcome::Dark => writeln!(out, "{}: dark", light.name),
-            Outcome::Unshadowed => writeln!(out, "{}: unshadowed", light.name),
-            Outcome::Shadowed => writeln!(
-                out,
-                "{}: {} sub-lights × {faces} faces = {} views, map {}x{}, up to {} mssm levels",
-                light.name,
-                light.part_count,
-                light.views.len(),
-                self.map,
-                self.map,
-                self.levels
-            ),
+            Outcome::Dark => writeln!(out, "lights nothing visible"),
+            Outcome::Unshadowed => writeln!(out, "casts no shadow on anything visible"),
+            Outcome::Shadowed => {
+                writeln!(out, "casts shadows")?;
+                self.write_views(out, light)
+            }
         }
+    }
+
+    fn write_views(&self, out: &mut Formatter, light: &LightPlan) -> Result {
+        let faces: Vec<&str> = (0..FACES.len())
+            .filter(|&face| (light.views.iter()).any(|view| view.view.face as usize == face))
+            .map(|face| FACES[face])
+            .collect();
+        writeln!(
+            out,
+            "  views       {}: {} {} x {} {} ({})",
+            light.views.len(),
+            light.part_count,
+            plural(light.part_count, "sub-light"),
+            faces.len(),
+            plural(faces.len(), "face"),
+            faces.join(", ")
+        )?;
+        writeln!(out, "  shadow map  {0}x{0} texels", self.map)?;
+        if light.recipe.mssm {
+            let (width, height) = self.size;
+            let levels = self.levels;
+            writeln!(
+                out,
+                "  mssm        up to {levels} levels, {0}x{0} each",
+                self.map
+            )?;
+            writeln!(out, "  kernels     {width}x{height}, one for each pixel")?;
+        }
+        if light.recipe.has(crate::technique::Work::PacketList) {
+            let (width, height) = self.packet;
+            writeln!(
+                out,
+                "  packets     {}x{} of {width}x{height} pixels",
+                self.size.0.div_ceil(width),
+                self.size.1.div_ceil(height)
+            )?;
+        }
+        let passes = self.view_passes(light, self.is_retained());
+        let passes: Vec<String> = passes
+            .iter()
+            .map(|&(name, times)| match times {
+                1 => name.to_owned(),
+                _ => format!("{name} x {times}"),
+            })
+            .collect();
+        writeln!(out, "  each view   {}", passes.join(", "))
+    }
+}
+
+/// Lines of two columns, the first as wide as it must be.
+fn write_columns<'a>(
+    out: &mut Formatter,
+    rows: impl Iterator<Item = (&'a str, &'a str)> + Clone,
+) -> Result {
+    let width = rows.clone().map(|(what, _)| what.chars().count()).max();
+    let width = width.unwrap_or(0);
+    for (what, why) in rows {
+        writeln!(out, "  {what:<width$}  {why}")?;
+    }
+    Ok(())
+}
+
+fn plural(count: usize, what: &str) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{what}{s}")
+}
+
+/// A size for people: the largest binary unit that leaves at least 1.
+fn human(bytes: u64) -> String {
+    let (mut size, mut unit) = (bytes as f64, "B");
+    for larger in ["KiB", "MiB", "GiB", "TiB"] {
+        if size < 1024.0 {
+            break;
+        }
+        (size, unit) = (size / 1024.0, larger);
+    }
+    match unit {
+        "B" => format!("{bytes} B"),
+        _ => format!("{size:.1} {unit}"),
     }
 }

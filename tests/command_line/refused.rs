@@ -1,0 +1,192 @@
+//! What is refused: with one sentence, and without a file.
+
+use super::program::{Folder, plate, scenes};
+use serde_json::{Value, json};
+
+const RENDER: [&str; 6] = [
+    "render",
+    "shot.json",
+    "-o",
+    "a.png",
+    "--visibility",
+    "a.exr",
+];
+
+/// Renders the plate after a change to its shot, which must be refused.
+fn refuses_shot(change: impl FnOnce(&mut Value), words: &[&str]) {
+    let (folder, mut shot) = (Folder::new(), plate());
+    change(&mut shot);
+    folder.write_shot(&shot);
+    folder.refuses(&RENDER, words);
+}
+
+#[test]
+fn scenes_that_cannot_be_read() {
+    let folder = Folder::new();
+    folder.refuses(
+        &["render", "no.json", "-o", "a.png"],
+        &["no.json", "No such file"],
+    );
+    folder.write("text.glb", "this is no glTF");
+    folder.refuses(&["render", "text.glb", "-o", "a.png"], &["text.glb"]);
+    let glb = std::fs::read(scenes().join("knot.glb")).unwrap();
+    folder.write("cut.glb", &glb[..glb.len() / 2]);
+    folder.refuses(&["render", "cut.glb", "-o", "a.png"], &["cut.glb"]);
+    let text = std::fs::read(scenes().join("plate.gltf")).unwrap();
+    let mut gltf: Value = serde_json::from_slice(&text).unwrap();
+    for accessor in gltf["accessors"].as_array_mut().unwrap() {
+        accessor["count"] = json!(100_000);
+    }
+    folder.write("far.gltf", gltf.to_string());
+    std::fs::copy(scenes().join("plate.bin"), folder.path("plate.bin")).unwrap();
+    folder.refuses(&["render", "far.gltf", "-o", "a.png"], &["far.gltf"]);
+}
+
+#[test]
+fn shots_that_are_none() {
+    let folder = Folder::new();
+    folder.write("shot.json", "scene: plate.gltf");
+    folder.refuses(&RENDER, &["shot.json", "not a shot file"]);
+    folder.write("shot.json", "[1, 2");
+    folder.refuses(&RENDER, &["shot.json", "not a shot file"]);
+    refuses_shot(|shot| shot["scene"] = json!("gone.glb"), &["gone.glb"]);
+    let infinite = plate()
+        .to_string()
+        .replace("\"vfov_deg\":36", "\"vfov_deg\":1e999");
+    folder.write("shot.json", infinite);
+    folder.refuses(&RENDER, &["shot.json", "out of range"]);
+    refuses_shot(
+        |shot| shot["camera"]["vfov_deg"] = json!("NaN"),
+        &["shot.json", "NaN"],
+    );
+}
+
+#[test]
+fn cameras_lights_and_sizes_that_make_no_sense() {
+    refuses_shot(
+        |shot| shot["camera"]["target"] = shot["camera"]["eye"].clone(),
+        &["camera", "same point"],
+    );
+    refuses_shot(
+        |shot| shot["lights"][0]["u"] = json!([0, 0, 0]),
+        &["light 0", "zero"],
+    );
+    refuses_shot(|shot| shot["lights"] = json!([]), &["no area light"]);
+    for side in [0, 100_000] {
+        let words = [&*format!("{side}x{side}"), "32768"];
+        refuses_shot(
+            |shot| {
+                shot["camera"]["width"] = json!(side);
+                shot["camera"]["height"] = json!(side);
+            },
+            &words,
+        );
+    }
+}
+
+#[test]
+fn settings_out_of_range() {
+    let folder = Folder::new();
+    folder.write_shot(&plate());
+    for (flag, value, range) in [
+        ("--map", "0", "16 to 8192"),
+        ("--map", "65536", "16 to 8192"),
+        ("--split", "0", "1 to 16"),
+        ("--split", "17", "1 to 16"),
+        ("--packet", "9x9", "1x1 to 8x8"),
+        ("--bias", "NaN", "finite"),
+        ("--light", "1", "there is no light 1"),
+        ("--ambient", "inf", "finite"),
+    ] {
+        folder.refuses(&[&RENDER[..], &[flag, value]].concat(), &[range]);
+    }
+    folder.refuses(
+        &[&RENDER[..], &["--device", "abacus"]].concat(),
+        &["abacus", "there are"],
+    );
+    let many = [
+        &["reference", "shot.json", "-o", "r.exr"][..],
+        &["--light", "7"],
+    ]
+    .concat();
+    folder.refuses(&many, &["7"]);
+}
+
+#[test]
+fn wrong_usage() {
+    let folder = Folder::new();
+    folder.write_shot(&plate());
+    for (flag, value, word) in [
+        ("--technique", "sorcery", "packet-contour"),
+        ("--leaf", "oak", "per-pixel"),
+        ("--mapping", "mercator", "lanes"),
+        ("--size", "0x0", "32768"),
+        ("--size", "100000x100000", "32768"),
+        ("--packet", "4", "4x4"),
+        ("--repeat", "0", "1..=10000"),
+        ("--frobnicate", "1", "--frobnicate"),
+    ] {
+        folder.refuses_usage(&[&RENDER[..], &[flag, value]].concat(), &[word]);
+    }
+    folder.refuses_usage(&["paint", "shot.json"], &["paint"]);
+    folder.refuses_usage(&["reference", "shot.json"], &["required"]);
+    folder.refuses_usage(&["compare", "a.exr"], &["required"]);
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let folder = Folder::new();
+    folder.write_shot(&plate());
+    std::fs::create_dir(folder.path("taken")).unwrap();
+    for flag in ["-o", "--visibility", "--stats"] {
+        folder.refuses(&["render", "shot.json", flag, "no/a"], &["does not exist"]);
+        folder.refuses(
+            &["render", "shot.json", flag, "taken"],
+            &["taken", "folder"],
+        );
+    }
+    folder.refuses(
+        &["reference", "shot.json", "-o", "no/a.exr"],
+        &["does not exist"],
+    );
+    folder.refuses(
+        &["render", "shot.json"],
+        &["nothing to write", "--visibility"],
+    );
+    folder.refuses(
+        &["render", "shot.json", "-o", "a", "--stats", "a"],
+        &["a is named twice"],
+    );
+}
+
+/// Root may write anywhere, so that there is nothing to refuse then.
+#[cfg(unix)]
+#[test]
+fn a_folder_that_may_not_be_written() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    folder.write_shot(&plate());
+    let locked = folder.path("locked");
+    std::fs::create_dir(&locked).unwrap();
+    std::fs::set_permissions(&locked, PermissionsExt::from_mode(0o555)).unwrap();
+    let may_write = std::fs::write(locked.join("probe"), "").is_ok();
+    if !may_write {
+        folder.refuses(
+            &["render", "shot.json", "-o", "locked/a.png"],
+            &["ermission denied"],
+        );
+    }
+    std::fs::set_permissions(&locked, PermissionsExt::from_mode(0o755)).unwrap();
+}
+
+#[test]
+fn comparisons_that_make_no_sense() {
+    let folder = Folder::new();
+    folder.refuses(&["compare", "a.exr", "b.exr"], &["a.exr", "No such file"]);
+    folder.refuses(&["compare", "a.png", "b.exr"], &["cannot be compared"]);
+    folder.write("a.exr", "no image");
+    folder.refuses(
+        &["compare", "a.exr", "a.exr", "--heatmap", "h.png"],
+        &["a.exr"],
+    );
+}

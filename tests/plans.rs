@@ -1,0 +1,177 @@
+//! Plans as text, against `tests/plans/*.txt`. `UPDATE_GOLDENS=1 cargo test --test plans` rewrites them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3, Vec4};
+use halfshade::gpu::Limits;
+use halfshade::plan::{Outputs, plan};
+use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
+use halfshade::shot::{Overrides, Settings, Shot, Technique};
+
+/// Of no device, so that the plans depend on none.
+const LIMITS: Limits = Limits {
+    image_side: 16384,
+    image_layers: 2048,
+    image_bytes: 1 << 31,
+    buffer_bytes: 1 << 27,
+    memory_bytes: 1 << 33,
+};
+
+const EVERYTHING: Outputs = Outputs { picture: true };
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn scene(name: &str) -> Shot {
+    let path = root().join(format!("scenes/{name}.json"));
+    Shot::load(&path, &Overrides::default()).expect("a committed scene")
+}
+
+fn with(mut shot: Shot, change: impl FnOnce(&mut Settings)) -> Shot {
+    change(&mut shot.settings);
+    shot
+}
+
+/// A square floor, seen from above, and a square light.
+fn floor(light_height: f64, light_v: DVec3) -> Shot {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let scene = Scene {
+        positions: corners.map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec(),
+        triangles: vec![[0, 2, 1], [0, 3, 2]],
+        triangle_materials: vec![0, 0],
+        opaque_count: 2,
+        materials: vec![Material {
+            name: "floor".into(),
+            base_color: Vec4::ONE,
+            texture: None,
+            alpha_cutoff: None,
+            double_sided: true,
+        }],
+        ..Scene::default()
+    };
+    Shot {
+        scene: Arc::new(scene),
+        camera: Camera {
+            name: "camera".into(),
+            eye: DVec3::new(0.0, 3.0, 3.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            vfov_deg: 45.0,
+            aspect: None,
+        },
+        width: 64,
+        height: 48,
+        lights: vec![AreaLight {
+            name: "light 0".into(),
+            center: DVec3::new(0.0, light_height, 0.0),
+            shape: LightShape::Rect {
+                u: DVec3::new(0.25, 0.0, 0.0),
+                v: light_v,
+            },
+            color: Vec3::ONE,
+            intensity: None,
+        }],
+        settings: Settings::default(),
+        notes: Vec::new(),
+    }
+}
+
+/// Compares with `tests/plans/{name}.txt`, or writes it.
+fn check(name: &str, shot: &Shot, outputs: Outputs, retained: bool) {
+    let text = plan(shot, outputs, &LIMITS, retained)
+        .expect("a shot that can be planned")
+        .to_string();
+    let file = root().join(format!("tests/plans/{name}.txt"));
+    if std::env::var_os("UPDATE_GOLDENS").is_some() {
+        write(&file, &text);
+    }
+    let golden = std::fs::read_to_string(&file).unwrap_or_default();
+    assert!(
+        text == golden,
+        "the plan differs from {}; if it should, run UPDATE_GOLDENS=1 cargo test --test plans\n{text}",
+        file.display()
+    );
+}
+
+fn write(file: &Path, text: &str) {
+    std::fs::write(file, text).expect("the goldens can be written");
+}
+
+#[test]
+fn every_scene_at_the_defaults() {
+    for name in ["colonnade", "grid", "knot", "plate", "staircase", "tree"] {
+        check(name, &scene(name), EVERYTHING, false);
+    }
+}
+
+#[test]
+fn visibility_alone_needs_no_shading() {
+    let outputs = Outputs { picture: false };
+    check("tree-visibility-only", &scene("tree"), outputs, false);
+}
+
+#[test]
+fn a_light_without_extent_casts_a_hard_shadow() {
+    let mut shot = scene("plate");
+    let nothing = DVec3::ZERO;
+    shot.lights[0].shape = LightShape::Rect {
+        u: nothing,
+        v: nothing,
+    };
+    check("plate-point", &shot, EVERYTHING, false);
+}
+
+#[test]
+fn settings_change_what_runs() {
+    let plate = || scene("plate");
+    let one_view = with(plate(), |settings| settings.split = 1);
+    check("plate-split-1", &one_view, EVERYTHING, false);
+    let pixels = with(plate(), |settings| settings.packet = (1, 1));
+    check("plate-packet-1x1", &pixels, EVERYTHING, false);
+    let hard = with(plate(), |settings| settings.technique = Technique::Hard);
+    check("plate-hard", &hard, EVERYTHING, false);
+    let flat = |settings: &mut Settings| settings.technique = Technique::PixelContour;
+    check(
+        "plate-pixel-contour",
+        &with(plate(), flat),
+        EVERYTHING,
+        false,
+    );
+}
+
+#[test]
+fn a_map_is_kept_while_nothing_changes() {
+    let shot = with(scene("staircase"), |settings| settings.split = 1);
+    check("staircase-retained", &shot, EVERYTHING, true);
+}
+
+#[test]
+fn a_floor_alone_has_no_shadow() {
+    let shot = floor(2.0, DVec3::new(0.0, 0.0, 0.25));
+    check("floor", &shot, EVERYTHING, false);
+}
+
+#[test]
+fn a_floor_lit_from_behind_is_dark() {
+    // Below the floor, and it shines up.
+    let shot = floor(-2.0, DVec3::new(0.0, 0.0, -0.25));
+    check("floor-from-behind", &shot, EVERYTHING, false);
+}
+
+#[test]
+fn limits_are_told_with_the_knob_to_turn() {
+    let limits = Limits {
+        image_side: 256,
+        ..LIMITS
+    };
+    let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
+    assert!(error.to_string().contains("--map"), "{error}");
+    let limits = Limits {
+        memory_bytes: 1 << 20,
+        ..LIMITS
+    };
+    let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
+    assert!(error.to_string().contains("choose a smaller"), "{error}");
+}
