@@ -6,6 +6,7 @@ use std::path::Path;
 use halfshade::shot::{MAX_SIZE, Shot};
 use halfshade::{Error, Result};
 
+pub mod calibrate;
 pub mod calibration;
 pub mod compare;
 pub mod devices;

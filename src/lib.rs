@@ -1,5 +1,7 @@
 //! Soft shadows of area lights.
 #[cfg(feature = "cli")]
+pub mod calibrate;
+#[cfg(feature = "cli")]
 pub mod compare;
 #[cfg(feature = "cli")]
 pub mod cpu;

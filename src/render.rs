@@ -24,6 +24,24 @@ pub const DEFAULT_COSTS: Costs = Costs {
     visibility: 2.0,
 };
 
+/// [visited node] The largest cost of an edge; beyond it f32 sums of costs lose the rest.
+pub const MAX_COST: f32 = 1e6;
+
+impl Costs {
+    /// # Errors
+    /// [`Error::Invalid`] when a cost is not more than 0 and at most [`MAX_COST`].
+    pub fn validate(self) -> Result<()> {
+        let sane = |cost: f32| cost > 0.0 && cost <= MAX_COST;
+        match sane(self.edge) && sane(self.visibility) {
+            true => Ok(()),
+            false => Err(Error::Invalid(format!(
+                "the costs of an edge are more than 0 and at most {MAX_COST}, not {} and {}",
+                self.edge, self.visibility
+            ))),
+        }
+    }
+}
+
 /// Constant light from everywhere, so that umbrae are dark rather than black.
 pub const DEFAULT_EXPOSURE: Exposure = Exposure {
     scale: 1.0,
@@ -68,6 +86,7 @@ impl Renderer {
     /// The shot makes no sense or exceeds the device's limits (see `plan`), memory or a pipeline cannot
     /// be had.
     pub fn new(gpu: &Arc<Gpu>, shot: &Shot, options: RenderOptions) -> Result<Self> {
+        options.costs.validate()?;
         let plan = plan(shot, options.outputs, &gpu.limits, false)?;
         let exposure = Exposure {
             light_count: plan.lights.len() as u32,
@@ -126,6 +145,17 @@ impl Renderer {
     /// The plan of the next frame.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// Changes the cost model's constants from the next frame on.
+    ///
+    /// # Errors
+    /// A constant is out of range (see [`Costs::validate`]), or a Vulkan call failed.
+    pub fn set_costs(&mut self, costs: Costs) -> Result<()> {
+        costs.validate()?;
+        self.resources.buffer("costs")?.upload(&[costs])?;
+        self.options.costs = costs;
+        Ok(())
     }
 
     /// Makes the next frame draw every map anew, as if something had changed.

@@ -1,5 +1,6 @@
 //! What `halfshade calibrate` found out about a device, stored per device in the user's data folder.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use halfshade::gpu::DeviceInfo;
@@ -9,17 +10,52 @@ use halfshade::shared::Costs;
 use halfshade::shot::{Leaf, Mapping, Settings};
 use halfshade::{Error, Result};
 
+/// Of the stored file. Files of any other format are refused.
+const FORMAT: u32 = 1;
+
 /// The settings that are fastest on a device, and the cost model's constants.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// Cost of extracting an edge, in visited nodes [Yang09 eq. 6].
+    /// Cost of extracting an edge, in visited nodes [Yang09 eq. 6]; more than 0, at most 10⁶.
     pub edge_cost: f32,
-    /// Cost of integrating an edge for one pixel, in visited nodes.
+    /// Cost of integrating an edge for one pixel, in visited nodes; more than 0, at most 10⁶.
     pub visibility_cost: f32,
-    /// [pixel]
+    /// [pixel] Each 1 to 8.
     pub packet: (u32, u32),
     pub leaf: Leaf,
     pub mapping: Mapping,
+}
+
+/// A line of the measured table.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// What was compared with what; medians of other races are not comparable.
+    pub race: String,
+    pub candidate: Calibration,
+    /// Rounds of the race.
+    pub rounds: usize,
+    /// [ms] GPU time of `classify` and the visibility passes in a frame, the geometric mean over the shots.
+    pub median_ms: f64,
+    /// [ms] Median absolute deviation.
+    pub spread_ms: f64,
+    /// ≥ 1. To the lowest median of the race.
+    pub ratio: f64,
+}
+
+/// The file.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    format: u32,
+    device: String,
+    /// Its name and version; another one may have other costs.
+    driver: String,
+    /// Of halfshade.
+    version: String,
+    calibration: Calibration,
+    measured: Vec<Row>,
 }
 
 impl Default for Calibration {
@@ -44,6 +80,17 @@ impl Calibration {
         }
     }
 
+    /// # Errors
+    /// When a value is out of its range.
+    pub fn validate(&self) -> Result<()> {
+        self.costs().validate()?;
+        let settings = Settings {
+            packet: self.packet,
+            ..Settings::default()
+        };
+        settings.validate()
+    }
+
     /// Where a device's calibration is stored. None: the user has no home folder.
     pub fn file(device: &DeviceInfo) -> Option<PathBuf> {
         let folders = super::project_folders()?;
@@ -54,32 +101,70 @@ impl Calibration {
         )
     }
 
-    /// The stored calibration of a device, or the built-in one; a file that can't be read is reported
-    /// and ignored.
+    /// The stored calibration of a device, or the built-in one; a file that is broken, of another format
+    /// or made with another driver is reported on stderr and ignored.
     pub fn of(device: &DeviceInfo) -> Self {
-        let Some(text) = Self::file(device).and_then(|file| std::fs::read_to_string(file).ok())
-        else {
-            return Self::default();
-        };
-        serde_json::from_str(&text).unwrap_or_else(|error| {
-            eprintln!(
-                "note: the stored calibration is ignored ({error}); run `halfshade calibrate` anew"
-            );
-            Self::default()
-        })
+        match Self::stored(device) {
+            Ok(stored) => stored.unwrap_or_default(),
+            Err(why) => {
+                // Nobody is left to tell when stderr is closed.
+                let _ = writeln!(
+                    std::io::stderr(),
+                    "note: the stored calibration is ignored ({why}); run `halfshade calibrate` anew"
+                );
+                Self::default()
+            }
+        }
     }
 
-    /// Stores it for a device.
-    pub fn store(&self, device: &DeviceInfo) -> Result<PathBuf> {
+    /// None: there is none. Errors: why it cannot be used.
+    fn stored(device: &DeviceInfo) -> Result<Option<Self>> {
+        let Some(file) = Self::file(device) else {
+            return Ok(None);
+        };
+        let text = match std::fs::read_to_string(&file) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            text => text.map_err(|error| Error::io(&file, error))?,
+        };
+        let refused = |why: String| Error::parse(&file, why);
+        let stored: Stored =
+            serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
+        if stored.format != FORMAT {
+            return Err(refused(format!("format {}, not {FORMAT}", stored.format)));
+        }
+        if stored.driver != device.driver {
+            return Err(refused(format!(
+                "made with the driver {:?}, which is now {:?}",
+                stored.driver, device.driver
+            )));
+        }
+        let checked = stored.calibration.validate();
+        checked.map_err(|error| refused(error.to_string()))?;
+        Ok(Some(stored.calibration))
+    }
+
+    /// Stores it for a device, with the table that it follows from, and returns the file.
+    ///
+    /// # Errors
+    /// There is no home folder, or the file cannot be written; then an older one is still there.
+    pub fn store(&self, device: &DeviceInfo, measured: Vec<Row>) -> Result<PathBuf> {
         let file = Self::file(device).ok_or_else(|| {
             Error::Unsupported("there is no home folder to store the calibration in".into())
         })?;
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         }
-        let text = serde_json::to_string_pretty(self)
+        let stored = Stored {
+            format: FORMAT,
+            device: device.name.clone(),
+            driver: device.driver.clone(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            calibration: *self,
+            measured,
+        };
+        let text = serde_json::to_string_pretty(&stored)
             .map_err(|error| Error::Invalid(error.to_string()))?;
-        write_atomically(&file, |out| out.write_all(text.as_bytes()))?;
+        write_atomically(&file, |out| writeln!(out, "{text}"))?;
         Ok(file)
     }
 }

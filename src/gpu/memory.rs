@@ -101,23 +101,27 @@ impl Buffer {
 
     /// A buffer on the device that holds `data`. Waits for the copy.
     pub fn with_data<T: bytemuck::Pod>(gpu: &Arc<Gpu>, name: &str, data: &[T]) -> Result<Self> {
-        let bytes: &[u8] = bytemuck::cast_slice(data);
-        let buffer = Self::new(gpu, name, bytes.len() as u64)?;
-        if bytes.is_empty() {
-            return Ok(buffer);
-        }
-        let mut staging = Self::at(
-            gpu,
-            &format!("{name} (staging)"),
-            bytes.len() as u64,
-            MemoryLocation::CpuToGpu,
-        )?;
-        staging.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
-        let mut recorder = Recorder::new(gpu, 0)?;
-        recorder.begin()?;
-        recorder.copy_buffer("upload", &staging, &buffer);
-        recorder.submit_and_wait()?;
+        let buffer = Self::new(gpu, name, size_of_val(data) as u64)?;
+        buffer.upload(data)?;
         Ok(buffer)
+    }
+
+    /// Replaces what a buffer on the device holds by `data` of the same size. Waits for the copy; nothing
+    /// that reads the buffer may be under way.
+    pub fn upload<T: bytemuck::Pod>(&self, data: &[T]) -> Result<()> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        let name = format!("{} (staging)", self.name);
+        let size = bytes.len() as u64;
+        let mut staging = Self::at(&self.gpu, &name, size, MemoryLocation::CpuToGpu)?;
+        staging.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
+        let mut recorder = Recorder::new(&self.gpu, 0)?;
+        recorder.begin()?;
+        recorder.copy_buffer("upload", &staging, self);
+        recorder.submit_and_wait()?;
+        Ok(())
     }
 
     fn at(gpu: &Arc<Gpu>, name: &str, bytes: u64, location: MemoryLocation) -> Result<Self> {

@@ -86,10 +86,23 @@ impl Shot {
     /// When a file cannot be read or what it describes cannot be rendered.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Shot> {
         let bytes = file::read(path)?;
-        let mut shot = match is_gltf(path, &bytes) {
-            true => Draft::new(gltf::parse(path, &bytes, &overrides.load_options())?),
-            false => read_shot_file(path, &bytes, overrides)?,
-        };
+        match is_gltf(path, &bytes) {
+            true => Self::from_gltf(path, &bytes, overrides),
+            false => Self::completed(read_shot_file(path, &bytes, overrides)?, path, overrides),
+        }
+    }
+
+    /// A glTF that is already in memory and brings its own camera and light; `path` names it in messages
+    /// and is where files that it refers to are looked for.
+    ///
+    /// # Errors
+    /// When it is malformed, refers to a file that cannot be read, or cannot be rendered.
+    pub fn from_gltf(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Shot> {
+        let scene = gltf::parse(path, bytes, &overrides.load_options())?;
+        Self::completed(Draft::new(scene), path, overrides)
+    }
+
+    fn completed(mut shot: Draft, path: &Path, overrides: &Overrides) -> Result<Shot> {
         if let Some(size) = overrides.size {
             shot.size = size.into();
         }

@@ -1,0 +1,253 @@
+//! The shots that calibration measures, and their renderers.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use halfshade::calibrate::{Measured, race};
+use halfshade::gpu::Gpu;
+use halfshade::plan::Outputs;
+use halfshade::render::{DEFAULT_EXPOSURE, Frame, RenderOptions, Renderer};
+use halfshade::shot::{Overrides, Settings, Shot, Technique};
+use halfshade::{Error, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::super::calibration::Calibration;
+use super::super::print_notes;
+
+/// Scenes of `scenes/`, which an installed program has not beside it: penumbrae of large casters, thin
+/// occluders, huge kernels.
+const BUILT_IN: [(&str, &[u8]); 3] = [
+    ("colonnade", include_bytes!("../../../scenes/colonnade.glb")),
+    ("tree", include_bytes!("../../../scenes/tree.glb")),
+    ("grid", include_bytes!("../../../scenes/grid.glb")),
+];
+
+/// [pixel] Width and height of the built-in shots: as large as keeps a frame below `FRAME_MS_MAX`.
+const SIZES: [u32; 4] = [64, 128, 256, 512];
+/// [ms] Visibility time of a frame of a built-in shot above which its size does not grow. Four times as
+/// many pixels take at most about four times as long.
+const FRAME_MS_MAX: f64 = 10.0;
+
+/// Kernels are as wide in texels as those of the default split 4 and map 512, since their width goes with
+/// map / split, and a frame draws a quarter of the views.
+const SPLIT: u32 = 2;
+const MAP: u32 = 256;
+/// With `--quick`.
+const QUICK_SPLIT: u32 = 1;
+const QUICK_MAP: u32 = 128;
+
+/// Renders the shots with one candidate after the other.
+pub struct Bench<'a> {
+    gpu: &'a Arc<Gpu>,
+    shots: Vec<Shot>,
+    /// By what pipelines are made for: a calibration less its costs.
+    renderers: Vec<(Calibration, Vec<Renderer>)>,
+    interrupted: &'a AtomicBool,
+    bar: ProgressBar,
+    start: Instant,
+    budget: Duration,
+}
+
+impl<'a> Bench<'a> {
+    /// `files` may be empty: the built-in shots. `budget`: when to stop trying further candidates.
+    ///
+    /// # Errors
+    /// A shot cannot be read or rendered, or the device has no timestamps.
+    pub fn new(
+        gpu: &'a Arc<Gpu>,
+        files: &[PathBuf],
+        quick: bool,
+        budget: Duration,
+        interrupted: &'a AtomicBool,
+    ) -> Result<Self> {
+        // Drawn on stderr, and only where that is a terminal.
+        let bar = ProgressBar::new(1000).with_style(style());
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let mut bench = Self {
+            gpu,
+            shots: Vec::new(),
+            renderers: Vec::new(),
+            interrupted,
+            bar,
+            start: Instant::now(),
+            budget,
+        };
+        bench.say("choosing sizes");
+        for file in files {
+            let mut shot = Shot::load(file, &Overrides::default())?;
+            print_notes(&shot);
+            shot.settings = settings(quick);
+            bench.shots.push(shot);
+        }
+        if files.is_empty() {
+            for (name, bytes) in BUILT_IN {
+                let shot = bench.sized(name, bytes, quick)?;
+                bench.shots.push(shot);
+            }
+        }
+        Ok(bench)
+    }
+
+    /// A built-in shot, as large as the device can quickly do.
+    fn sized(&self, name: &str, bytes: &[u8], quick: bool) -> Result<Shot> {
+        let pixelwise = Calibration {
+            packet: (1, 1),
+            ..Calibration::default()
+        };
+        let mut shot = None;
+        for size in SIZES {
+            let overrides = Overrides {
+                size: Some((size, size)),
+                ..Overrides::default()
+            };
+            let mut larger = Shot::from_gltf(Path::new(name), bytes, &overrides)?;
+            larger.settings = settings(quick);
+            let mut renderer = self.renderer(&larger, &pixelwise)?;
+            let ms = self.frame_ms(&mut renderer)?;
+            shot = Some(larger);
+            if quick || ms > FRAME_MS_MAX {
+                break;
+            }
+        }
+        shot.ok_or_else(|| Error::Invalid(format!("{name} has no size")))
+    }
+
+    fn renderer(&self, shot: &Shot, candidate: &Calibration) -> Result<Renderer> {
+        let mut shot = shot.clone();
+        shot.settings.packet = candidate.packet;
+        shot.settings.leaf = candidate.leaf;
+        shot.settings.mapping = candidate.mapping;
+        let options = RenderOptions {
+            outputs: Outputs { picture: false },
+            costs: candidate.costs(),
+            exposure: DEFAULT_EXPOSURE,
+        };
+        Renderer::new(self.gpu, &shot, options)
+    }
+
+    /// Makes ready to measure a candidate, unless something else with its pipelines has been before, and
+    /// warms up.
+    pub fn prepare(&mut self, candidate: &Calibration) -> Result<()> {
+        let key = without_costs(candidate);
+        if self.renderers.iter().any(|(known, _)| *known == key) {
+            return Ok(());
+        }
+        let mut renderers = Vec::new();
+        for shot in &self.shots {
+            let mut renderer = self.renderer(shot, candidate)?;
+            self.frame_ms(&mut renderer)?;
+            renderers.push(renderer);
+        }
+        self.renderers.push((key, renderers));
+        Ok(())
+    }
+
+    /// A race between candidates, which have been prepared.
+    pub fn race(
+        &mut self,
+        candidates: &[Calibration],
+        rounds: usize,
+    ) -> Result<Vec<Measured<Calibration>>> {
+        race(candidates, rounds, &mut |candidate| self.measure(candidate))
+    }
+
+    /// [ms] GPU time of `classify` and the visibility passes in a frame, the geometric mean over the shots.
+    pub fn measure(&mut self, candidate: &Calibration) -> Result<f64> {
+        let key = without_costs(candidate);
+        let position = self.renderers.iter().position(|(known, _)| *known == key);
+        let index = position.ok_or_else(|| Error::Invalid("a candidate is not prepared".into()))?;
+        let mut renderers = std::mem::take(&mut self.renderers[index].1);
+        let mut sum = 0.0;
+        for renderer in &mut renderers {
+            renderer.set_costs(candidate.costs())?;
+            sum += self.frame_ms(renderer)?.ln();
+        }
+        let mean = (sum / renderers.len() as f64).exp();
+        self.renderers[index].1 = renderers;
+        Ok(mean)
+    }
+
+    fn frame_ms(&self, renderer: &mut Renderer) -> Result<f64> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(Error::Invalid(
+                "interrupted, the stored calibration is as it was".into(),
+            ));
+        }
+        let ms = visibility_ms(&renderer.render()?)?;
+        let spent = self.start.elapsed().as_secs_f64() / self.budget.as_secs_f64();
+        self.bar.set_position((spent * 1000.0).min(1000.0) as u64);
+        Ok(ms)
+    }
+
+    /// What is being done, beside the progress bar.
+    pub fn say(&self, what: &'static str) {
+        self.bar.set_message(what);
+    }
+
+    /// Whether no more than `share` [0, 1] of the time is spent.
+    pub fn has_time(&self, share: f64) -> bool {
+        self.start.elapsed() < self.budget.mul_f64(share)
+    }
+
+    /// What is measured, a line.
+    pub fn describe(&self) -> String {
+        let sizes = (self.shots.iter())
+            .map(|shot| format!("{}x{}", shot.width, shot.height))
+            .collect::<Vec<_>>()
+            .join(", ");
+        let settings = &self.shots[0].settings;
+        format!(
+            "{} shots ({sizes}), split {}, map {}",
+            self.shots.len(),
+            settings.split,
+            settings.map
+        )
+    }
+}
+
+impl Drop for Bench<'_> {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The pipelines do not depend on the costs.
+fn without_costs(candidate: &Calibration) -> Calibration {
+    Calibration {
+        edge_cost: 1.0,
+        visibility_cost: 1.0,
+        ..*candidate
+    }
+}
+
+fn settings(quick: bool) -> Settings {
+    Settings {
+        technique: Technique::PacketContour,
+        split: if quick { QUICK_SPLIT } else { SPLIT },
+        map: if quick { QUICK_MAP } else { MAP },
+        ..Settings::default()
+    }
+}
+
+/// [ms] More than 0.
+fn visibility_ms(frame: &Frame) -> Result<f64> {
+    let counts = |name: &str| name == "classify" || name.contains("visibility");
+    let passes = frame.timings.passes.iter();
+    let ms: f64 = passes
+        .filter(|(name, _)| counts(name))
+        .map(|(_, ms)| ms)
+        .sum();
+    match ms > 0.0 {
+        true => Ok(ms),
+        false => Err(Error::Unsupported(
+            "nothing to calibrate: the device measures no time, or a shot has no shadow".into(),
+        )),
+    }
+}
+
+fn style() -> ProgressStyle {
+    let template = "{msg:<24} {wide_bar} {percent:>3} % {eta:>6} left at most";
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
