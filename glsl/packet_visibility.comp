@@ -35,6 +35,8 @@ const uint PIXELS_PER_PACKET = PACKET_WIDTH * PACKET_HEIGHT;
 
 // The pixels that this invocation integrates; those that are no penumbra pixels are not held.
 bool is_held[HELD];
+// One more than the last that is. Not a constant, or drivers unroll the loops and compile for half a minute.
+uint held_end = 0u;
 uint pixel_index[HELD];
 Receiver held[HELD];
 float beyond[HELD];
@@ -50,6 +52,7 @@ void hold(View view, Fit fit, uint slot, uint index) {
     vec3 to_point = texelFetch(position_world, pixel, 0).xyz - view.center;
     vec3 normal = texelFetch(normal_world, pixel, 0).xyz;
     is_held[slot] = true;
+    held_end = slot + 1u;
     pixel_index[slot] = index;
     held[slot] = project(view, fit, to_point, normal);
     beyond[slot] = 0.0;
@@ -71,25 +74,27 @@ Packet packet_of_pixel(uint index) {
     return Packet(index, kernel.first, kernel.last, receiver.biased, receiver.biased, receiver.d, receiver.t.xyxy);
 }
 
+// As `misses_light`, for one receiver and a map that is not parallel to the light: through the middle and
+// the reach of the node's box.
+bool misses_obliquely(View view, Receiver receiver, vec2 lower, vec2 upper, float depth_max) {
+    vec2 middle = 0.5 * (lower + upper) - receiver.t;
+    vec2 reach = 0.5 * (upper - lower);
+    float w = depth_max - receiver.d + dot(receiver.b, middle) + dot(abs(receiver.b), reach);
+    vec2 x = dot(receiver.ku, middle) + vec2(-1.0, 1.0) * dot(abs(receiver.ku), reach);
+    vec2 y = dot(receiver.kv, middle) + vec2(-1.0, 1.0) * dot(abs(receiver.kv), reach);
+    return x.x > w * view.extent.z || x.y < w * view.extent.x || y.x > w * view.extent.w || y.y < w * view.extent.y;
+}
+
 // Whether nothing in the node can project onto the light, for any of the packet's pixels
 // (algorithm.md §7): exact, since occluders as near as `depth_max` reach no farther than this.
 bool misses_light(View view, Packet packet, ivec2 node, int side, float depth_max) {
     vec2 lower = vec2(node);
     vec2 upper = vec2(node + side);
-    if (!OBLIQUE) {
-        vec2 reach = (depth_max - packet.depth_far) / kappa;
-        return any(greaterThan(lower, packet.centers.zw + reach * view.extent.zw))
-            || any(lessThan(upper, packet.centers.xy + reach * view.extent.xy));
-    }
-    if (!PIXELWISE) return false;
-    // The box's middle and reach, through the receiver's own back-projection.
-    Receiver receiver = held[0];
-    vec2 middle = 0.5 * (lower + upper) - receiver.t;
-    vec2 reach = vec2(0.5 * float(side));
-    float w = depth_max - receiver.d + dot(receiver.b, middle) + dot(abs(receiver.b), reach);
-    vec2 x = dot(receiver.ku, middle) + vec2(-1.0, 1.0) * dot(abs(receiver.ku), reach);
-    vec2 y = dot(receiver.kv, middle) + vec2(-1.0, 1.0) * dot(abs(receiver.kv), reach);
-    return x.x > w * view.extent.z || x.y < w * view.extent.x || y.x > w * view.extent.w || y.y < w * view.extent.y;
+    vec2 reach = (depth_max - packet.depth_far) / kappa;
+    bool misses = any(greaterThan(lower, packet.centers.zw + reach * view.extent.zw))
+               || any(lessThan(upper, packet.centers.xy + reach * view.extent.xy));
+    if (OBLIQUE) misses = PIXELWISE && misses_obliquely(view, held[0], lower, upper, depth_max);
+    return misses;
 }
 
 // A walk through the quadtree below one root after the other, depth first. The stack is one integer: two
@@ -123,12 +128,13 @@ void pass_by(inout Walk walk, ivec2 first, ivec2 last) {
     // Children 0 … 3 stand at (0, 0), (1, 0), (0, 1), (1, 1).
     int side = 1 << walk.level;
     walk.node += (walk.stack & 1u) != 0u ? ivec2(side, 0) : ivec2(-side, side);
-    if (walk.level < walk.top) return;
-    walk.root.x += side;
-    if (walk.root.x > last.x) walk.root = ivec2(first.x, walk.root.y + side);
-    walk.node = walk.root;
-    walk.stack = 0u;
-    walk.ended = walk.root.y > last.y;
+    if (walk.level == walk.top) {
+        walk.root.x += side;
+        if (walk.root.x > last.x) walk.root = ivec2(first.x, walk.root.y + side);
+        walk.node = walk.root;
+        walk.stack = 0u;
+        walk.ended = walk.root.y > last.y;
+    }
 }
 
 // Walks to the next cell with a contour and past it. False: there is none left.
@@ -154,7 +160,7 @@ bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
             pass_by(walk, first, last);
         }
     }
-    steps += subgroupMax(turns);
+    steps += subgroupMax(turns) + 1u;
     return found;
 }
 
@@ -166,14 +172,14 @@ bool integrate(View view, Packet packet, ivec2 cell, uint segment, out bool more
     bool agreed = PIXELWISE || mask == mask_of(depths, packet.depth_min);
     if (agreed) edges_extracted += uint(segment < segment_count(mask));
     more = false;
-    for (uint i = 0u; i < HELD; ++i) {
+    for (uint i = 0u; i < held_end; ++i) {
         uint own = mask_of(depths, REPROCESS ? packet.depth_max : held[i].biased);
         own = is_held[i] ? own : 0u;
         beyond[i] += segment_beyond(view, held[i], cell, depths, own, segment);
         edges_extracted += uint(!agreed && segment < segment_count(own));
         more = more || segment + 1u < segment_count(own);
     }
-    steps += HELD;
+    steps += HELD + 1u;
     return agreed || !REPROCESS;
 }
 
@@ -243,7 +249,7 @@ void main() {
     }
 
     bool finished = traverse(view, fit, packet);
-    for (uint i = 0u; i < HELD; ++i) {
+    for (uint i = 0u; i < held_end; ++i) {
         if (is_held[i] && finished) {
             float occluded = view.weight * occluded_share(view, held[i], shadow_map, beyond[i]);
             if (ACCUMULATE) occlusion[pixel_index[i]] += occluded;

@@ -2,8 +2,9 @@
 // the cells [i, i + 2^l) × [j, j + 2^l). What lies beyond the map is empty: depth 0.
 
 vec2 mssm_fetch(texture2DArray mssm, ivec2 cell, int level, int size) {
-    if (any(greaterThanEqual(uvec2(cell), uvec2(size)))) return vec2(0.0);
-    return texelFetch(mssm, ivec3(cell, level), 0).xy;
+    ivec2 held = min(cell, ivec2(size - 1));
+    vec2 bounds = texelFetch(mssm, ivec3(held, level), 0).xy;
+    return cell == held ? bounds : vec2(0.0);
 }
 
 // Depth bounds over the cells first … last (inclusive, inside the map), from squares of one level that

@@ -8,7 +8,7 @@
 #include "constants.glsl"
 
 // [turn] of all loops of the invocations that run in step with this one. lavapipe ends every loop after
-// 65535 turns in sum, so long walks count theirs and say so when they could not finish.
+// 65535 turns in sum (the one that finds the loop's end counts too), so long walks count theirs and say so when they could not finish.
 uint steps = 0u;
 
 layout(push_constant, scalar) uniform PushBlock { Push push; };

@@ -40,7 +40,7 @@ void next_contour(Receiver receiver, ivec2 first, ivec2 last, inout ivec2 cell, 
         cell = cell.x < last.x ? cell + ivec2(1, 0) : ivec2(first.x, cell.y + 1);
     }
     cells_visited += turns;
-    steps += subgroupMax(turns);
+    steps += subgroupMax(turns) + 1u;
 }
 
 // The loops are nested so that invocations side by side integrate together and look for contours together;
