@@ -4,11 +4,13 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::{LightPlan, Outcome, Plan};
 
+const MSSM_LEVELS: &str = "mssm levels";
+
 /// What only the device finds out, and leaves out then.
 const ON_DEVICE: [(&str, &str); 3] = [
     ("triangles", "those that shadow nothing visible"),
     ("views", "those without receivers or without casters"),
-    ("mssm levels", "those above a view's largest kernel"),
+    (MSSM_LEVELS, "those above a view's largest kernel"),
 ];
 
 /// The faces of a view, by where they look in the light's frame.
@@ -45,8 +47,15 @@ impl Display for Plan {
             out,
             (self.omissions.iter()).map(|omission| (&*omission.what, &*omission.reason)),
         )?;
+        if self.views().next().is_none() {
+            return Ok(());
+        }
         writeln!(out, "\nleft out by the device, where it finds so")?;
-        write_columns(out, ON_DEVICE.into_iter())
+        let found = ON_DEVICE.into_iter();
+        write_columns(
+            out,
+            found.filter(|(what, _)| *what != MSSM_LEVELS || self.levels > 0),
+        )
     }
 }
 
