@@ -124,15 +124,29 @@ impl Recorder {
 
     /// Brings new images into the layout that they stay in.
     pub fn initialize(&mut self, resources: &Resources) {
-        let barriers: Vec<_> = resources
-            .images()
+        self.change_layout(
+            resources.images(),
+            vk::ImageLayout::UNDEFINED,
+            vk::ImageLayout::GENERAL,
+        );
+    }
+
+    /// Changes the layout of images, after all that was recorded before.
+    fn change_layout<'a>(
+        &self,
+        images: impl Iterator<Item = &'a Image>,
+        from: vk::ImageLayout,
+        to: vk::ImageLayout,
+    ) {
+        let barriers: Vec<_> = images
             .map(|image| {
                 vk::ImageMemoryBarrier2::default()
                     .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+                    .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
                     .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
                     .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
-                    .old_layout(vk::ImageLayout::UNDEFINED)
-                    .new_layout(vk::ImageLayout::GENERAL)
+                    .old_layout(from)
+                    .new_layout(to)
                     .image(image.raw)
                     .subresource_range(image.range())
             })
@@ -213,6 +227,11 @@ impl Recorder {
 
     /// Copies all layers of an image, tightly packed.
     pub fn copy_image(&mut self, name: &str, from: &Image, to: &Buffer) {
+        let (general, source) = (
+            vk::ImageLayout::GENERAL,
+            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+        );
+        self.change_layout(std::iter::once(from), general, source);
         self.pass(name, |device, commands| {
             let layers = vk::ImageSubresourceLayers::default()
                 .aspect_mask(from.kind.aspect())
@@ -225,16 +244,9 @@ impl Recorder {
                     depth: 1,
                 })];
             // SAFETY: recording; the buffer was made for the image.
-            unsafe {
-                device.cmd_copy_image_to_buffer(
-                    commands,
-                    from.raw,
-                    vk::ImageLayout::GENERAL,
-                    to.raw,
-                    &region,
-                )
-            };
+            unsafe { device.cmd_copy_image_to_buffer(commands, from.raw, source, to.raw, &region) };
         });
+        self.change_layout(std::iter::once(from), source, general);
     }
 
     /// Submits and waits for the end. Returns the GPU time of each pass.
