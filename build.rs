@@ -27,11 +27,14 @@ fn main() {
             .file_name()
             .and_then(|name| name.to_str())
             .expect("a UTF-8 name");
-        fs::write(
-            out.join(format!("{file}.spv")),
-            bytemuck::cast_slice::<u32, u8>(&words),
-        )
-        .expect("OUT_DIR is writable");
+        // The named words are for the test of the layouts.
+        for (suffix, words) in [("spv", &words), ("named.spv", &named)] {
+            fs::write(
+                out.join(format!("{file}.{suffix}")),
+                bytemuck::cast_slice::<u32, u8>(words),
+            )
+            .expect("OUT_DIR is writable");
+        }
         writeln!(
             table,
             "Shader {{ name: {file:?}, words: words!(\"{file}.spv\"), bindings: &[{}] }},",
