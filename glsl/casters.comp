@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 // Leaves out the triangles that shadow no visible receiver of this view, appends the others to the
 // index list of its shadow map and reduces their bounds (algorithm.md §10). A triangle casts no
 // shadow when sub-light and receivers lie on one closed side of its plane, or when it lies outside the
@@ -22,7 +23,13 @@ layout(binding = 5, scalar) writeonly buffer CasterIndices { uint caster_indices
 // plane count as on its side.
 const float PLANE_ROUNDING = 2e-6;
 
-shared uint bounds[5];
+// Upper bounds of one invocation's casters; see `Fit`.
+struct Reach {
+    vec4 tangents;
+    float negated_near;
+};
+
+const float NONE = -1e38;
 
 vec3 receiver_corner(Fit fit, float side) {
     return side * vec3(value_of(fit.receiver_bounds[side > 0.0 ? 0 : 3], 0.0),
@@ -45,19 +52,14 @@ bool one_sided(vec3 corner[3], Box light, Box receivers, float magnitude) {
     return max(of_light.y, of_receivers.y) <= rounding || min(of_light.x, of_receivers.x) >= -rounding;
 }
 
-void include(vec3 p) {
-    vec2 tangent = p.xy / p.z;
-    atomicMax(bounds[0], bound_of(tangent.x));
-    atomicMax(bounds[1], bound_of(tangent.y));
-    atomicMax(bounds[2], bound_of(-tangent.x));
-    atomicMax(bounds[3], bound_of(-tangent.y));
-    atomicMax(bounds[4], bound_of(-p.z));
+void include(inout Reach reach, vec3 p) {
+    reach.tangents = max(reach.tangents, vec4(p.xy, -p.xy) / p.z);
+    reach.negated_near = max(reach.negated_near, -p.z);
 }
 
-// Clips the triangle to the region and reduces what is left into the bounds. False: nothing is left.
-bool include_clipped(View view, Box light, vec4 slopes, float depth_max, vec3 corner[3]) {
+// Clips a polygon of `count` ≤ 3 corners to the region and reduces what is left. False: nothing is.
+bool include_clipped(inout Reach reach, View view, Box light, vec4 slopes, float depth_max, vec3 corner[3], int count) {
     vec3 polygon[3 + PLANE_COUNT];
-    int count = 3;
     for (int i = 0; i < 3; ++i) polygon[i] = corner[i];
     for (uint plane = 0u; plane < PLANE_COUNT && count > 0; ++plane) {
         vec3 clipped[3 + PLANE_COUNT];
@@ -76,23 +78,25 @@ bool include_clipped(View view, Box light, vec4 slopes, float depth_max, vec3 co
         polygon = clipped;
         count = kept;
     }
-    for (int i = 0; i < count; ++i) include(polygon[i]);
+    for (int i = 0; i < count; ++i) include(reach, polygon[i]);
     return count > 0;
 }
 
 // Reduces the triangle's part inside the region into the bounds. False: it has none.
-bool include_triangle(View view, Box light, vec4 slopes, float depth_max, vec3 corner[3]) {
+bool include_triangle(inout Reach reach, View view, Box light, vec4 slopes, float depth_max, vec3 corner[3]) {
     float[PLANE_COUNT] a = plane_distances(view, light, slopes, depth_max, corner[0]);
     float[PLANE_COUNT] b = plane_distances(view, light, slopes, depth_max, corner[1]);
     float[PLANE_COUNT] c = plane_distances(view, light, slopes, depth_max, corner[2]);
     bool inside = true;
+    bool outside = false;
     for (uint plane = 0u; plane < PLANE_COUNT; ++plane) {
-        if (a[plane] < 0.0 && b[plane] < 0.0 && c[plane] < 0.0) return false;
+        outside = outside || max(a[plane], max(b[plane], c[plane])) < 0.0;
         inside = inside && min(a[plane], min(b[plane], c[plane])) >= 0.0;
     }
-    if (!inside) return include_clipped(view, light, slopes, depth_max, corner);
-    for (int i = 0; i < 3; ++i) include(corner[i]);
-    return true;
+    if (inside) for (int i = 0; i < 3; ++i) include(reach, corner[i]);
+    bool crosses = !inside && !outside;
+    bool clipped = include_clipped(reach, view, light, slopes, depth_max, corner, crosses ? 3 : 0);
+    return inside || clipped;
 }
 
 void append(uvec3 triangle, bool masked) {
@@ -102,28 +106,29 @@ void append(uvec3 triangle, bool masked) {
 }
 
 void main() {
-    if (fits[push.index].receiver_count == 0u) return;
-    if (gl_LocalInvocationIndex < 5u) bounds[gl_LocalInvocationIndex] = 0u;
-    barrier();
+    Fit fit = fits[push.index];
+    if (fit.receiver_count == 0u) return;
     View view = views[push.index];
-    uint index = gl_WorkGroupID.y * GROUPS_PER_ROW * GROUP_SIZE + gl_GlobalInvocationID.x;
-    if (index < frame.opaque_count + frame.masked_count) {
-        Fit fit = fits[push.index];
-        Box light = box_of_light(view);
-        Box receivers = Box(receiver_corner(fit, -1.0), receiver_corner(fit, 1.0));
-        vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
-                           value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    Box light = box_of_light(view);
+    Box receivers = Box(receiver_corner(fit, -1.0), receiver_corner(fit, 1.0));
+    vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
+                       value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    float depth_max = max(receivers.upper.z, light.upper.z);
+    vec3 largest = max(abs(receivers.lower), abs(receivers.upper)) + abs(view.center);
+    Reach reach = Reach(vec4(NONE), NONE);
+    uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
+    for (uint index = gl_GlobalInvocationID.x; index < frame.opaque_count + frame.masked_count; index += stride) {
         uvec3 triangle = triangles[index];
         vec3 corner[3];
         for (int i = 0; i < 3; ++i) corner[i] = to_face(view, positions[triangle[i]] - view.center);
-        vec3 largest = max(max(abs(receivers.lower), abs(receivers.upper)), abs(corner[0])) + abs(view.center);
-        float magnitude = largest.x + largest.y + largest.z;
-        float depth_max = max(receivers.upper.z, light.upper.z);
+        float magnitude = dot(max(largest, abs(corner[0]) + abs(view.center)), vec3(1.0));
         if (!one_sided(corner, light, receivers, magnitude)
-            && include_triangle(view, light, slopes, depth_max, corner))
+            && include_triangle(reach, view, light, slopes, depth_max, corner))
             append(triangle, index >= frame.opaque_count);
     }
-    barrier();
-    if (gl_LocalInvocationIndex < 5u && bounds[gl_LocalInvocationIndex] != 0u)
-        atomicMax(fits[push.index].caster_bounds[gl_LocalInvocationIndex], bounds[gl_LocalInvocationIndex]);
+    vec4 tangents = subgroupMax(reach.tangents);
+    float negated_near = subgroupMax(reach.negated_near);
+    if (negated_near == NONE || !subgroupElect()) return;
+    for (int i = 0; i < 4; ++i) atomicMax(fits[push.index].caster_bounds[i], bound_of(tangents[i]));
+    atomicMax(fits[push.index].caster_bounds[4], bound_of(negated_near));
 }

@@ -32,8 +32,6 @@ layout(binding = 13, scalar) buffer ListsBlock { Lists lists[]; };
 #include "radial.glsl"
 
 const uint PIXELS_PER_PACKET = PACKET_WIDTH * PACKET_HEIGHT;
-// Pixels that are integrated without a loop.
-const uint BATCH = HELD < 16u ? HELD : 16u;
 
 // The pixels that this invocation integrates; those that are no penumbra pixels are not held.
 bool is_held[HELD];
@@ -168,23 +166,20 @@ bool integrate(View view, Packet packet, ivec2 cell, uint segment, out bool more
     bool agreed = PIXELWISE || mask == mask_of(depths, packet.depth_min);
     if (agreed) edges_extracted += uint(segment < segment_count(mask));
     more = false;
-    for (uint batch = 0u; batch < HELD; batch += BATCH) {
-        [[unroll]] for (uint k = 0u; k < BATCH; ++k) {
-            uint i = batch + k;
-            if (i < HELD && is_held[i]) {
-                uint own = REPROCESS ? mask : mask_of(depths, held[i].biased);
-                beyond[i] += segment_beyond(view, held[i], cell, depths, own, segment);
-                edges_extracted += uint(!agreed && segment < segment_count(own));
-                more = more || segment + 1u < segment_count(own);
-            }
-        }
+    for (uint i = 0u; i < HELD; ++i) {
+        uint own = mask_of(depths, REPROCESS ? packet.depth_max : held[i].biased);
+        own = is_held[i] ? own : 0u;
+        beyond[i] += segment_beyond(view, held[i], cell, depths, own, segment);
+        edges_extracted += uint(!agreed && segment < segment_count(own));
+        more = more || segment + 1u < segment_count(own);
     }
-    steps += HELD / BATCH;
+    steps += HELD;
     return agreed || !REPROCESS;
 }
 
 // The loops are nested so that invocations side by side integrate together and walk together; the rare
-// second segment of a cell is a turn of its own. False: to be reprocessed.
+// second segment of a cell is a turn of its own. False: to be reprocessed, since the pixels disagree or
+// the walk is longer than the driver lets it be.
 bool traverse(View view, Fit fit, Packet packet) {
     Walk walk = start_of(packet, int(fit.level_count));
     ivec2 cell = ivec2(0);
@@ -198,8 +193,9 @@ bool traverse(View view, Fit fit, Packet packet) {
         if (!more) found = next_cell(view, packet, walk, cell);
         if (found) agreed = integrate(view, packet, cell, segment, more);
     }
-    if (agreed && (more || !walk.ended)) atomicAdd(fits[push.index].unfinished, 1u);
-    return agreed;
+    bool finished = !more && walk.ended;
+    if (PIXELWISE && !finished) atomicAdd(fits[push.index].unfinished, 1u);
+    return agreed && finished;
 }
 
 void count(bool finished) {
@@ -238,7 +234,7 @@ void main() {
             hold(view, fit, 0u, index);
             for (uint i = 0u; i < lane; ++i) speaks = speaks && !penumbra_pixel(packet, i, index);
         } else {
-            [[unroll]] for (uint i = 0u; i < HELD; ++i) {
+            for (uint i = 0u; i < HELD; ++i) {
                 uint index;
                 is_held[i] = false;
                 if (penumbra_pixel(packet, i, index)) hold(view, fit, i, index);
@@ -247,7 +243,7 @@ void main() {
     }
 
     bool finished = traverse(view, fit, packet);
-    [[unroll]] for (uint i = 0u; i < HELD; ++i) {
+    for (uint i = 0u; i < HELD; ++i) {
         if (is_held[i] && finished) {
             float occluded = view.weight * occluded_share(view, held[i], shadow_map, beyond[i]);
             if (ACCUMULATE) occlusion[pixel_index[i]] += occluded;

@@ -8,7 +8,7 @@ use crate::gpu::{
     Attachments, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Recorder, Resources,
 };
 use crate::plan::{Plan, Variant};
-use crate::shared::{Fit, GROUP_SIZE, GROUPS_PER_ROW, Lists, Push, TILE_SIZE};
+use crate::shared::{Fit, GROUP_SIZE, Lists, Push, TILE_SIZE};
 use crate::shot::Settings;
 use crate::technique::{Recipe, Stage, Work};
 
@@ -76,19 +76,10 @@ impl ViewPasses {
         index: u32,
     ) -> Result<()> {
         let push = Push { index, level: 0 };
-        recorder.dispatch(
-            "receivers",
-            &self.receivers,
-            push,
-            Groups::Direct(tiles(plan)),
-        );
-        let groups = (plan.frame.opaque_count + plan.frame.masked_count).div_ceil(GROUP_SIZE);
-        let rows = [
-            groups.min(GROUPS_PER_ROW),
-            groups.div_ceil(GROUPS_PER_ROW),
-            1,
-        ];
-        recorder.dispatch("casters", &self.casters, push, Groups::Direct(rows));
+        let triangles = plan.frame.opaque_count + plan.frame.masked_count;
+        let pixels = plan.size.0 * plan.size.1;
+        recorder.dispatch("receivers", &self.receivers, push, reduction(pixels));
+        recorder.dispatch("casters", &self.casters, push, reduction(triangles));
         recorder.dispatch("fit", &self.fit, push, Groups::Direct([1, 1, 1]));
 
         let fits = resources.buffer("fits")?;
@@ -154,6 +145,15 @@ impl ViewPasses {
         }
         Ok(())
     }
+}
+
+/// Work groups of a pass that reduces `count` items: each invocation takes several, so that few of them
+/// have to agree in memory.
+fn reduction(count: u32) -> Groups<'static> {
+    const ITEMS_PER_INVOCATION: u32 = 8;
+    const GROUPS_MAX: u32 = 4096;
+    let groups = count.div_ceil(GROUP_SIZE * ITEMS_PER_INVOCATION);
+    Groups::Direct([groups.clamp(1, GROUPS_MAX), 1, 1])
 }
 
 /// Work groups over the image.
