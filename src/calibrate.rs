@@ -9,6 +9,8 @@ use crate::shared::Costs;
 const GAIN_MIN: f64 = 0.005;
 /// How many standard errors of the median a challenger must be better by.
 const CONFIDENCE: f64 = 2.0;
+/// Rounds below which nothing is certain.
+const ROUNDS_MIN: usize = 3;
 /// Standard deviation of a normal distribution per median absolute deviation, and standard error of its
 /// median per standard deviation and root of the count.
 const DEVIATION_PER_MAD: f64 = 1.4826;
@@ -34,13 +36,14 @@ impl<T> Measured<T> {
     }
 
     /// Whether it is cheaper than `other`, of the same race, by more than the noise of their ratio: rounds
-    /// are compared with each other, so what slows down a whole round does not count.
+    /// are compared with each other, so what slows down a whole round does not count. Fewer than three
+    /// rounds decide nothing.
     pub fn beats(&self, other: &Self) -> bool {
         let pairs = self.costs.iter().zip(&other.costs);
         let gains: Vec<f64> = pairs.map(|(own, others)| (others / own).ln()).collect();
         let noise =
             deviation(&gains) * DEVIATION_PER_MAD * MEDIAN_ERROR / (gains.len() as f64).sqrt();
-        median(&gains) > GAIN_MIN.max(CONFIDENCE * noise)
+        gains.len() >= ROUNDS_MIN && median(&gains) > GAIN_MIN.max(CONFIDENCE * noise)
     }
 }
 
@@ -62,13 +65,14 @@ fn deviation(values: &[f64]) -> f64 {
 }
 
 /// Measures all candidates `rounds` times, in turns, every other round backwards: drift of the machine
-/// hits all alike.
+/// hits all alike. Ends after a round, at the earliest the first, once `goes_on` is false.
 ///
 /// # Errors
 /// What `measure` fails with.
 pub fn race<T: Clone>(
     candidates: &[T],
     rounds: usize,
+    goes_on: &dyn Fn() -> bool,
     measure: &mut dyn FnMut(&T) -> Result<f64>,
 ) -> Result<Vec<Measured<T>>> {
     let mut measured: Vec<Measured<T>> = (candidates.iter())
@@ -78,6 +82,9 @@ pub fn race<T: Clone>(
         })
         .collect();
     for round in 0..rounds {
+        if round > 0 && !goes_on() {
+            break;
+        }
         for turn in 0..candidates.len() {
             let index = match round % 2 {
                 0 => turn,
@@ -169,7 +176,7 @@ pub fn search_costs(
     }
     let mut candidates = vec![start];
     candidates.extend(grid(thoroughness.grid));
-    let mut coarse = race(&candidates, thoroughness.grid_rounds, measure)?;
+    let mut coarse = race(&candidates, thoroughness.grid_rounds, goes_on, measure)?;
     found.races.push(coarse.clone());
     coarse.remove(0);
     coarse.sort_by(|a, b| a.median().total_cmp(&b.median()));
@@ -177,12 +184,18 @@ pub fn search_costs(
     found.challenge(
         &finalists[..FINALISTS.min(finalists.len())],
         thoroughness,
+        goes_on,
         measure,
     )?;
     let mut step = (RANGE[0][1] - RANGE[0][0]) / (thoroughness.grid.max(2) - 1) as f64 / 2.0;
     let mut races = 0;
     while step >= STEP_MIN && races < thoroughness.races_max && goes_on() {
-        if !found.challenge(&neighbours(found.costs, step), thoroughness, measure)? {
+        if !found.challenge(
+            &neighbours(found.costs, step),
+            thoroughness,
+            goes_on,
+            measure,
+        )? {
             step *= 0.5;
         }
         races += 1;
@@ -196,11 +209,12 @@ impl Found {
         &mut self,
         challengers: &[Costs],
         thoroughness: Thoroughness,
+        goes_on: &dyn Fn() -> bool,
         measure: &mut dyn FnMut(&Costs) -> Result<f64>,
     ) -> Result<bool> {
         let mut candidates = vec![self.costs];
         candidates.extend(challengers);
-        let measured = race(&candidates, thoroughness.rounds, measure)?;
+        let measured = race(&candidates, thoroughness.rounds, goes_on, measure)?;
         let first = winner(&measured);
         self.costs = measured[first].candidate;
         self.races.push(measured);

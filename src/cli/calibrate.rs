@@ -37,28 +37,29 @@ pub struct Args {
     /// A rough answer: small pictures, few candidates and rounds
     #[arg(long)]
     quick: bool,
-    /// Try no further candidates after this time [default: 300, or 8 with --quick]
+    /// Try nothing further after this time [default: 300, or 8 with --quick]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86400))]
     seconds: Option<u64>,
 }
 
-/// [pixel] Packet sizes, and how pixels map to invocations, the likeliest first, in case time runs out.
+/// [pixel] Packet sizes, and how pixels map to invocations: the built-in default, then the likeliest first,
+/// in case time runs out.
 const LAYOUTS: [((u32, u32), Mapping); 12] = [
-    ((4, 4), Mapping::Serial),
     ((4, 4), Mapping::Lanes),
-    ((2, 2), Mapping::Serial),
     ((2, 2), Mapping::Lanes),
+    ((4, 2), Mapping::Lanes),
+    ((2, 2), Mapping::Serial),
+    ((3, 3), Mapping::Lanes),
     ((8, 4), Mapping::Lanes),
     ((8, 8), Mapping::Lanes),
     ((4, 2), Mapping::Serial),
-    ((4, 2), Mapping::Lanes),
     ((3, 3), Mapping::Serial),
-    ((3, 3), Mapping::Lanes),
+    ((4, 4), Mapping::Serial),
     ((8, 4), Mapping::Serial),
     ((8, 8), Mapping::Serial),
 ];
 /// Layouts of `--quick`.
-const QUICK_LAYOUTS: usize = 3;
+const QUICK_LAYOUTS: usize = 2;
 /// Layouts this much slower than the best are not tried with the other leaf rule.
 const HOPELESS: f64 = 1.3;
 
@@ -77,10 +78,11 @@ const QUICK_SEARCH: Thoroughness = Thoroughness {
     races_max: 2,
 };
 
-/// Shares of the time after which no further candidate is prepared.
-const LAYOUTS_SHARE: f64 = 0.4;
-const LEAVES_SHARE: f64 = 0.6;
-const COSTS_SHARE: f64 = 0.9;
+/// Shares of the time after which no further candidate is prepared, and races end with their round.
+const LAYOUTS_READY: f64 = 0.25;
+const LAYOUTS_RACED: f64 = 0.45;
+const LEAVES_READY: f64 = 0.55;
+const LEAVES_RACED: f64 = 0.65;
 
 /// # Errors
 /// A shot cannot be read or rendered, the device measures no time, the result cannot be stored, or Ctrl-C;
@@ -130,22 +132,22 @@ fn tune(bench: &mut Bench, quick: bool, measured: &mut Vec<Row>) -> Result<Calib
         ..Calibration::default()
     });
     // The path without packets is a yardstick, not a candidate: --packet 1x1 asks for it.
-    let mut ready = prepared(bench, candidates, LAYOUTS_SHARE)?;
+    let mut ready = prepared(bench, candidates, LAYOUTS_READY)?;
     let yardstick = Calibration {
         packet: (1, 1),
         ..ready[0]
     };
     bench.prepare(&yardstick)?;
     ready.push(yardstick);
-    let mut layouts = bench.race(&ready, rounds)?;
+    let mut layouts = bench.race(&ready, rounds, LAYOUTS_RACED)?;
     measured.extend(rows("packet and mapping", &layouts));
     layouts.pop();
     let mut chosen = layouts[winner(&layouts)].candidate;
 
     bench.say("leaf rules");
     let leaves = with_both_leaf_rules(&chosen, &layouts);
-    let ready = prepared(bench, leaves.into_iter(), LEAVES_SHARE)?;
-    let leaves = bench.race(&ready, rounds)?;
+    let ready = prepared(bench, leaves.into_iter(), LEAVES_READY)?;
+    let leaves = bench.race(&ready, rounds, LEAVES_RACED)?;
     measured.extend(rows("leaf rule", &leaves));
     chosen = leaves[winner(&leaves)].candidate;
 
@@ -213,7 +215,7 @@ fn search(
     let found = search_costs(
         chosen.costs(),
         thoroughness,
-        &|| bench.borrow().has_time(COSTS_SHARE),
+        &|| bench.borrow().has_time(1.0),
         &mut |costs| bench.borrow_mut().measure(&at(costs)),
     )?;
     for (index, race) in found.races.iter().enumerate() {

@@ -24,19 +24,20 @@ const BUILT_IN: [(&str, &[u8]); 3] = [
     ("grid", include_bytes!("../../../scenes/grid.glb")),
 ];
 
-/// [pixel] Width and height of the built-in shots: as large as keeps a frame below `FRAME_MS_MAX`.
-const SIZES: [u32; 4] = [64, 128, 256, 512];
-/// [ms] Visibility time of a frame of a built-in shot above which its size does not grow. Four times as
-/// many pixels take at most about four times as long.
-const FRAME_MS_MAX: f64 = 10.0;
+/// [pixel] Width and height at which a built-in shot is tried; with `--quick` also measured.
+const SIZE_PROBE: u32 = 64;
+/// [pixel] Sizes to measure at: packets are the more coherent, the smaller the pixels.
+const SIZE: u32 = 256;
+const SIZE_FAST: u32 = 512;
+/// [ms] Expected visibility time of a frame beyond which a built-in shot is left out.
+const FRAME_MS_MAX: f64 = 1500.0;
+/// [ms] Expected visibility time of a frame up to which a built-in shot is measured at the larger size.
+const FRAME_MS_FAST: f64 = 300.0;
 
 /// Kernels are as wide in texels as those of the default split 4 and map 512, since their width goes with
-/// map / split, and a frame draws a quarter of the views.
-const SPLIT: u32 = 2;
-const MAP: u32 = 256;
-/// With `--quick`.
-const QUICK_SPLIT: u32 = 1;
-const QUICK_MAP: u32 = 128;
+/// map / split, and a frame draws a sixteenth of the views.
+const SPLIT: u32 = 1;
+const MAP: u32 = 128;
 
 /// Renders the shots with one candidate after the other.
 pub struct Bench<'a> {
@@ -78,40 +79,44 @@ impl<'a> Bench<'a> {
         for file in files {
             let mut shot = Shot::load(file, &Overrides::default())?;
             print_notes(&shot);
-            shot.settings = settings(quick);
+            shot.settings = settings();
             bench.shots.push(shot);
         }
         if files.is_empty() {
             for (name, bytes) in BUILT_IN {
-                let shot = bench.sized(name, bytes, quick)?;
-                bench.shots.push(shot);
+                let sized = bench.sized(name, bytes, quick)?;
+                bench.shots.extend(sized);
             }
         }
         Ok(bench)
     }
 
-    /// A built-in shot, as large as the device can quickly do.
-    fn sized(&self, name: &str, bytes: &[u8], quick: bool) -> Result<Shot> {
+    /// A built-in shot, in a size that suits the device. None: it is too slow for the shot.
+    fn sized(&self, name: &str, bytes: &[u8], quick: bool) -> Result<Option<Shot>> {
         let pixelwise = Calibration {
             packet: (1, 1),
             ..Calibration::default()
         };
-        let mut shot = None;
-        for size in SIZES {
+        let at = |size: u32| {
             let overrides = Overrides {
                 size: Some((size, size)),
                 ..Overrides::default()
             };
-            let mut larger = Shot::from_gltf(Path::new(name), bytes, &overrides)?;
-            larger.settings = settings(quick);
-            let mut renderer = self.renderer(&larger, &pixelwise)?;
-            let ms = self.frame_ms(&mut renderer)?;
-            shot = Some(larger);
-            if quick || ms > FRAME_MS_MAX {
-                break;
-            }
+            let shot = Shot::from_gltf(Path::new(name), bytes, &overrides)?;
+            Ok::<_, Error>(Shot {
+                settings: settings(),
+                ..shot
+            })
+        };
+        let probe = at(SIZE_PROBE)?;
+        let ms = self.frame_ms(&mut self.renderer(&probe, &pixelwise)?)?;
+        let expected = |size: u32| ms * f64::from(size / SIZE_PROBE).powi(2);
+        match quick {
+            _ if expected(SIZE) > FRAME_MS_MAX && !self.shots.is_empty() => Ok(None),
+            true => Ok(Some(probe)),
+            false if expected(SIZE_FAST) <= FRAME_MS_FAST => at(SIZE_FAST).map(Some),
+            false => at(SIZE).map(Some),
         }
-        shot.ok_or_else(|| Error::Invalid(format!("{name} has no size")))
     }
 
     fn renderer(&self, shot: &Shot, candidate: &Calibration) -> Result<Renderer> {
@@ -144,13 +149,18 @@ impl<'a> Bench<'a> {
         Ok(())
     }
 
-    /// A race between candidates, which have been prepared.
+    /// A race between candidates, which have been prepared; it ends early when `share` of the time is spent.
     pub fn race(
         &mut self,
         candidates: &[Calibration],
         rounds: usize,
+        share: f64,
     ) -> Result<Vec<Measured<Calibration>>> {
-        race(candidates, rounds, &mut |candidate| self.measure(candidate))
+        let (start, budget) = (self.start, self.budget.mul_f64(share));
+        let goes_on = || start.elapsed() < budget;
+        race(candidates, rounds, &goes_on, &mut |candidate| {
+            self.measure(candidate)
+        })
     }
 
     /// [ms] GPU time of `classify` and the visibility passes in a frame, the geometric mean over the shots.
@@ -199,7 +209,7 @@ impl<'a> Bench<'a> {
             .join(", ");
         let settings = &self.shots[0].settings;
         format!(
-            "{} shots ({sizes}), split {}, map {}",
+            "{} shot(s) ({sizes}), split {}, map {}",
             self.shots.len(),
             settings.split,
             settings.map
@@ -222,11 +232,11 @@ fn without_costs(candidate: &Calibration) -> Calibration {
     }
 }
 
-fn settings(quick: bool) -> Settings {
+fn settings() -> Settings {
     Settings {
         technique: Technique::PacketContour,
-        split: if quick { QUICK_SPLIT } else { SPLIT },
-        map: if quick { QUICK_MAP } else { MAP },
+        split: SPLIT,
+        map: MAP,
         ..Settings::default()
     }
 }
