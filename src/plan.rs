@@ -5,7 +5,7 @@ mod camera;
 mod survey;
 mod text;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
@@ -504,8 +504,12 @@ fn view_plan(
     let rim = part.rim.map_or([0.0; 3], |(center, radius)| {
         [center.x as f32, center.y as f32, radius as f32]
     });
-    // A light without extent has no half sizes to divide by; nothing reads them.
-    let over = |axis: DVec3, half: f64| if half > 0.0 { axis / half } else { DVec3::ZERO };
+    // A light without extent is a point in the middle of half sizes that can be divided by.
+    let (half, (lower, upper)) = if light.is_point() {
+        (DVec2::ONE, (DVec2::ZERO, DVec2::ZERO))
+    } else {
+        (part.half_size, part.extent)
+    };
     let sectors = part.rim.map(|_| part.sectors());
     let area = sectors
         .as_ref()
@@ -515,15 +519,15 @@ fn view_plan(
         right: array(right),
         up: array(up),
         forward: array(forward),
-        light_u: array(over(u, part.half_size.x)),
-        light_v: array(over(v, part.half_size.y)),
+        light_u: array(u / half.x),
+        light_v: array(v / half.y),
         light_n: array(n),
-        half_size: part.half_size.as_vec2().into(),
+        half_size: half.as_vec2().into(),
         extent: [
-            part.extent.0.x as f32,
-            part.extent.0.y as f32,
-            part.extent.1.x as f32,
-            part.extent.1.y as f32,
+            lower.x as f32,
+            lower.y as f32,
+            upper.x as f32,
+            upper.y as f32,
         ],
         rim,
         area,

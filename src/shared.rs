@@ -199,10 +199,10 @@ shared! {
         light_v: vec3,
         /// Unit vector along which the light shines.
         light_n: vec3,
-        /// [scene units] The sub-light's half sizes.
+        /// [scene units] The sub-light's half sizes; 1 for a light without extent.
         half_size: vec2,
         /// [half sizes] Where the sub-light begins and ends, seen from its centre: −1, −1, 1, 1 unless
-        /// a disc's rim cuts it.
+        /// a disc's rim cuts it; all 0 for a light without extent.
         extent: vec4,
         /// [half sizes] Centre and radius of the disc that bounds it, if one does.
         rim: vec3,
