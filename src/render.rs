@@ -4,7 +4,7 @@ mod resources;
 mod specialization;
 mod view;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, btree_map::Entry};
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
@@ -97,16 +97,15 @@ impl Renderer {
         for light in &plan.lights {
             for planned in &light.views {
                 let key = (planned.variant, light.recipe.clone());
-                if !views.contains_key(&key) {
-                    let passes = ViewPasses::new(
+                if let Entry::Vacant(vacant) = views.entry(key) {
+                    vacant.insert(ViewPasses::new(
                         gpu,
                         &plan,
                         &shot.settings,
                         &light.recipe,
                         planned.variant,
                         &resources,
-                    )?;
-                    views.insert(key, passes);
+                    )?);
                 }
             }
         }

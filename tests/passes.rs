@@ -182,8 +182,8 @@ fn check_integration(traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> (Vec
         largest = largest.max((found - share).abs());
         // No kernel, lit or umbra pixel may have lost an occluder to what was cut away.
         if let Some(receiver) = receiver
-            && pixel.0 % WHOLE_MAP_STEP == 0
-            && pixel.1 % WHOLE_MAP_STEP == 0
+            && pixel.0.is_multiple_of(WHOLE_MAP_STEP)
+            && pixel.1.is_multiple_of(WHOLE_MAP_STEP)
         {
             let whole = light.hidden_share(receiver, [0; 2], [MAP as i32 - 2; 2]);
             assert!(
