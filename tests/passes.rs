@@ -24,8 +24,11 @@ use halfshade::shot::{Leaf, Mapping, Shot};
 /// [visibility] The device sums some hundred areas in f32, each with a rounding error of a few 1e-7 of the
 /// light, and interpolates the sectors of discs.
 const TOLERANCE: f64 = 1e-4;
+/// [pixel] Where a light is cut into parts, only one diagonal in so many is integrated: each place in a
+/// packet of 4×4 is met, and the many views cost no more than the one of the whole light.
+const DIAGONAL_STEP: u32 = 4;
 /// [pixel] One in so many, in both directions, is also integrated over the whole map.
-const WHOLE_MAP_STEP: u32 = 13;
+const WHOLE_MAP_STEP: u32 = 12;
 
 /// A pixel that the view has to look at.
 type Seen = Option<Receiver>;
@@ -127,7 +130,7 @@ fn check_lists(shot: &Shot, traces: &Traces, seen: &[Seen], kernels: &[Kernel]) 
                 assert_ne!(decision, Decision::Incoherent, "{packet:?}");
                 assert_eq!(found, packet);
                 // The traversal may hand the whole packet on to the list of pixels.
-                assert!(single == 0 || reprocess && single == members.len());
+                assert!(single == 0 || single == members.len());
                 reprocessed += u32::from(single > 0);
             }
             None => {
@@ -153,8 +156,28 @@ fn check_lists(shot: &Shot, traces: &Traces, seen: &[Seen], kernels: &[Kernel]) 
     [undecided, packets.len()]
 }
 
-/// [0, 1] What the view hides from each pixel, by the twin; and the largest difference from the device.
-fn check_integration(traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> (Vec<f64>, f64) {
+/// The pixels that are integrated.
+fn integrated(shot: &Shot) -> impl Iterator<Item = usize> {
+    let step = if shot.settings.split > 1 {
+        DIAGONAL_STEP
+    } else {
+        1
+    };
+    let pixels = 0..SIZE * SIZE;
+    pixels
+        .filter(move |i| (i % SIZE + i / SIZE) % step == 0)
+        .map(|i| i as usize)
+}
+
+/// What the view hides from each pixel by the twin, added to `hidden`, each weighed; returns the largest
+/// difference from the device, as a share of the sub-light.
+fn check_integration(
+    shot: &Shot,
+    traces: &Traces,
+    seen: &[Seen],
+    kernels: &[Kernel],
+    hidden: &mut [f64],
+) -> f64 {
     let View { weight, area, .. } = traces.planned.view;
     let map = ShadowMap {
         size: MAP as i32,
@@ -162,38 +185,40 @@ fn check_integration(traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> (Vec
     };
     let round = traces.planned.variant.round;
     let light = SubLight::new(&traces.planned.view, &traces.fit, round, map);
+    // The device's area is the end of a table in f32.
     assert!((light.area() - f64::from(area)).abs() < 1e-5, "area {area}");
     let mut largest: f64 = 0.0;
-    let mut shares = Vec::new();
-    for (i, (receiver, kernel)) in seen.iter().zip(kernels).enumerate() {
-        let share = match (receiver, kernel.status) {
-            (Some(receiver), KERNEL_PENUMBRA) => {
+    for i in integrated(shot) {
+        let Some(receiver) = &seen[i] else {
+            assert_eq!(traces.occlusion[i], 0.0);
+            continue;
+        };
+        let kernel = kernels[i];
+        let share = match kernel.status {
+            KERNEL_PENUMBRA => {
                 light.hidden_share(receiver, unpacked(kernel.first), unpacked(kernel.last))
             }
-            (Some(_), KERNEL_UMBRA) => 1.0,
+            KERNEL_UMBRA => 1.0,
             _ => 0.0,
         };
-        let found = f64::from(traces.occlusion[i]) / f64::from(weight);
-        let pixel = (i as u32 % SIZE, i as u32 / SIZE);
+        let found = f64::from(traces.occlusion[i] / weight);
+        let pixel = [i as u32 % SIZE, i as u32 / SIZE];
         assert!(
             (found - share).abs() < TOLERANCE,
             "pixel {pixel:?}: {found} of the light hidden, by the twin {share}; {kernel:?}, {receiver:?}"
         );
         largest = largest.max((found - share).abs());
-        // No kernel, lit or umbra pixel may have lost an occluder to what was cut away.
-        if let Some(receiver) = receiver
-            && pixel.0.is_multiple_of(WHOLE_MAP_STEP)
-            && pixel.1.is_multiple_of(WHOLE_MAP_STEP)
-        {
+        hidden[i] += f64::from(weight) * share;
+        // No kernel, no lit and no umbra pixel may have lost an occluder to what was cut away.
+        if pixel.iter().all(|at| at % WHOLE_MAP_STEP == 0) {
             let whole = light.hidden_share(receiver, [0; 2], [MAP as i32 - 2; 2]);
             assert!(
                 (whole - share).abs() < TOLERANCE,
                 "pixel {pixel:?}: the whole map hides {whole}, its kernel {share}; {kernel:?}, {receiver:?}"
             );
         }
-        shares.push(share);
     }
-    (shares, largest)
+    largest
 }
 
 /// Every view's passes and the sum of the views.
@@ -214,34 +239,39 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
         let kernels = check_kernels(&traces, &seen, &mssm);
         let counted = check_lists(shot, &traces, &seen, &kernels);
         undecided = [undecided[0] + counted[0], undecided[1] + counted[1]];
-        let (shares, difference) = check_integration(&traces, &seen, &kernels);
-        largest = largest.max(difference);
-        for (sum, share) in hidden.iter_mut().zip(shares) {
-            *sum += f64::from(traces.planned.view.weight) * share;
-        }
+        largest = largest.max(check_integration(
+            shot,
+            &traces,
+            &seen,
+            &kernels,
+            &mut hidden,
+        ));
     }
     renderer.render().expect("the scenes can be rendered");
     let found = renderer.visibility(0).expect("visibility");
+    let points = points(&renderer);
     let mut summed: f64 = 0.0;
-    for (i, (point, &found)) in points(&renderer).iter().zip(&found).enumerate() {
-        let Some(Point { position, normal }) = *point else {
-            assert!(found.is_nan());
+    for i in integrated(shot) {
+        let Some(Point { position, normal }) = points[i] else {
+            assert!(found[i].is_nan());
             continue;
         };
         let wanted = resolve::visibility(&light, position, normal, hidden[i]);
-        summed = summed.max((f64::from(found) - wanted).abs());
+        let difference = (f64::from(found[i]) - wanted).abs();
         assert!(
-            (f64::from(found) - wanted).abs() < TOLERANCE,
-            "{name}, pixel {i}: visibility {found}, by the twin {wanted}"
+            difference < TOLERANCE,
+            "{name}, pixel {i}: visibility {}, by the twin {wanted}",
+            found[i]
         );
+        summed = summed.max(difference);
     }
     println!(
         "{name}, split {}, {} views: largest difference {largest:.1e} in a view, {summed:.1e} in their sum; \
          {} of {} packets undecided",
         shot.settings.split, light.view_count, undecided[0], undecided[1]
     );
-    // Decisions that rounding could turn over are rare: less than one in a thousand.
-    assert!(1000 * undecided[0] <= undecided[1], "{name}: {undecided:?}");
+    // Widths are small integers, so that the two costs of a packet now and then are the same but for rounding.
+    assert!(100 * undecided[0] <= undecided[1], "{name}: {undecided:?}");
 }
 
 /// The scene as it is, with packets of 4×4 and the leaf rule `per-pixel`, in one part and in four.

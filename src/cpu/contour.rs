@@ -29,21 +29,32 @@ impl ShadowMap<'_> {
 
     /// The contour's segments in a cell round the samples nearer to the light than `limit`.
     pub fn segments(&self, cell: [i32; 2], limit: f32) -> impl Iterator<Item = Segment> + use<> {
-        let depths = self.corners(cell);
-        let occludes = depths.map(|d| d > limit);
-        let starts = (0..4).filter(move |&e| occludes[e] && !occludes[(e + 1) % 4]);
-        starts.map(move |start| {
-            // Round the occluders that hang together, clockwise, to the first of them: so the saddles keep
-            // their two occluders apart.
-            let mut first = start;
-            while occludes[(first + 3) % 4] {
-                first = (first + 3) % 4;
+        segments_of(self.corners(cell), cell, limit)
+    }
+
+    /// The contour's segments in the cells first … last, inclusive, one after the other.
+    pub fn for_each_segment(
+        &self,
+        first: [i32; 2],
+        last: [i32; 2],
+        limit: f32,
+        mut with: impl FnMut(Segment),
+    ) {
+        for y in first[1]..=last[1] {
+            let row = |y: i32| {
+                let start = y * self.size;
+                &self.depths[(start + first[0]) as usize..=(start + last[0] + 1) as usize]
+            };
+            let cells = row(y).windows(2).zip(row(y + 1).windows(2));
+            for (x, (below, above)) in (first[0]..).zip(cells) {
+                let depths = [below[0], below[1], above[1], above[0]];
+                let occludes = depths[0] > limit;
+                if depths.iter().all(|&d| (d > limit) == occludes) {
+                    continue;
+                }
+                segments_of(depths, [x, y], limit).for_each(&mut with);
             }
-            Segment {
-                ends: [midpoint(cell, start), midpoint(cell, (first + 3) % 4)],
-                depths: [depths[start], depths[first]],
-            }
-        })
+        }
     }
 
     /// Whether the light's centre is hidden: the point `t` lies inside the contour (trap 1).
@@ -57,6 +68,24 @@ impl ShadowMap<'_> {
                 .segments(cell, limit)
                 .any(|segment| segment.side_of(t) > 0.0)
     }
+}
+
+/// The contour's segments in a cell with these depths at its corners.
+fn segments_of(depths: [f32; 4], cell: [i32; 2], limit: f32) -> impl Iterator<Item = Segment> {
+    let occludes = depths.map(|d| d > limit);
+    let starts = (0..4).filter(move |&e| occludes[e] && !occludes[(e + 1) % 4]);
+    starts.map(move |start| {
+        // Round the occluders that hang together, clockwise, to the first of them: so the saddles keep
+        // their two occluders apart.
+        let mut first = start;
+        while occludes[(first + 3) % 4] {
+            first = (first + 3) % 4;
+        }
+        Segment {
+            ends: [midpoint(cell, start), midpoint(cell, (first + 3) % 4)],
+            depths: [depths[start], depths[first]],
+        }
+    })
 }
 
 fn midpoint(cell: [i32; 2], edge: usize) -> DVec2 {

@@ -22,8 +22,8 @@ pub struct SubLight<'a> {
     center: DVec2,
     /// From the face's frame to the light's: half sizes along u and v, height over the light plane.
     to_light: DMat3,
-    /// [half sizes] Corners of its box, counter-clockwise.
-    corners: [DVec2; 4],
+    /// [half sizes] Its box.
+    outline: Polygon,
     rim: Option<Rim>,
     area: f64,
 }
@@ -51,21 +51,21 @@ impl<'a> SubLight<'a> {
             center: DVec2::new(view.rim[0].into(), view.rim[1].into()),
             radius: view.rim[2].into(),
         });
-        let corners = [
+        let outline = Polygon::new(&[
             low,
             DVec2::new(high.x, low.y),
             high,
             DVec2::new(low.x, high.y),
-        ];
+        ]);
         Self {
             map,
             near: fit.near.into(),
             focal: DVec2::new(fit.focal[0].into(), fit.focal[1].into()),
             center: DVec2::new(fit.center[0].into(), fit.center[1].into()),
             to_light: from_world * to_world,
-            corners,
+            area: outline.area(rim),
+            outline,
             rim,
-            area: lit_area(&corners, rim),
         }
     }
 
@@ -79,16 +79,13 @@ impl<'a> SubLight<'a> {
         let t = receiver.t.as_dvec2();
         let eye = self.lifted(t, receiver.d.into());
         let mut beyond = 0.0;
-        for y in first[1]..=last[1] {
-            for x in first[0]..=last[0] {
-                for segment in self.map.segments([x, y], receiver.biased) {
-                    if let Some(ends) = self.projected(eye, &segment) {
-                        let side = segment.side_of(t);
-                        beyond += side * self.area_beyond(ends, side);
-                    }
-                }
+        let limit = receiver.biased;
+        self.map.for_each_segment(first, last, limit, |segment| {
+            if let Some(ends) = self.projected(eye, &segment) {
+                let side = segment.side_of(t);
+                beyond += side * self.area_beyond(ends, side);
             }
-        }
+        });
         let center = if self.map.hides(t, receiver.biased) {
             self.area
         } else {
@@ -126,7 +123,7 @@ impl<'a> SubLight<'a> {
     /// [half sizes²] Area of the part of the light that lies beyond the segment a→b, seen from the centre, within
     /// its angle. `side`: +1 where the centre lies left of it, −1 right.
     fn area_beyond(&self, [a, b]: [DVec2; 2], side: f64) -> f64 {
-        let [low, _, high, _] = self.corners;
+        let (low, high) = (self.outline.corners[0], self.outline.corners[2]);
         let (least, most) = (a.min(b), a.max(b));
         if least.cmpge(high).any() || most.cmple(low).any() {
             return 0.0;
@@ -144,12 +141,11 @@ impl<'a> SubLight<'a> {
             through: a,
             along: side * (a - b),
         };
-        let polygon = [angle_from, angle_to, segment]
-            .iter()
-            .fold(self.corners.to_vec(), |polygon, line| {
-                line.left_of(&polygon)
-            });
-        lit_area(&polygon, self.rim)
+        self.outline
+            .left_of(&angle_from)
+            .left_of(&angle_to)
+            .left_of(&segment)
+            .area(self.rim)
     }
 }
 
@@ -159,12 +155,38 @@ struct Line {
     along: DVec2,
 }
 
-impl Line {
-    /// The part of a convex polygon on the left.
-    fn left_of(&self, polygon: &[DVec2]) -> Vec<DVec2> {
-        let height = |p: DVec2| self.along.perp_dot(p - self.through);
-        let mut part = Vec::with_capacity(polygon.len() + 1);
-        for (&p, &q) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+/// A convex polygon, counter-clockwise: a box, cut by up to four lines.
+#[derive(Clone, Copy)]
+struct Polygon {
+    corners: [DVec2; 8],
+    count: usize,
+}
+
+impl Polygon {
+    fn new(corners: &[DVec2]) -> Self {
+        let mut polygon = Self {
+            corners: [DVec2::ZERO; 8],
+            count: 0,
+        };
+        corners.iter().for_each(|&corner| polygon.push(corner));
+        polygon
+    }
+
+    fn push(&mut self, corner: DVec2) {
+        self.corners[self.count] = corner;
+        self.count += 1;
+    }
+
+    fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> {
+        let next = |i| if i + 1 < self.count { i + 1 } else { 0 };
+        (0..self.count).map(move |i| (self.corners[i], self.corners[next(i)]))
+    }
+
+    /// The part on the left of a line.
+    fn left_of(&self, line: &Line) -> Self {
+        let height = |p: DVec2| line.along.perp_dot(p - line.through);
+        let mut part = Self::new(&[]);
+        for (p, q) in self.edges() {
             let (from, to) = (height(p), height(q));
             if from >= 0.0 {
                 part.push(p);
@@ -175,17 +197,16 @@ impl Line {
         }
         part
     }
-}
 
-/// Area of the part of a counter-clockwise polygon that lies within the rim, if there is one.
-fn lit_area(polygon: &[DVec2], rim: Option<Rim>) -> f64 {
-    let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    edges
-        .map(|(&p, &q)| match rim {
-            None => 0.5 * p.perp_dot(q),
-            Some(rim) => rim.swept(p - rim.center, q - rim.center),
-        })
-        .sum()
+    /// Area of the part within the rim, if there is one.
+    fn area(&self, rim: Option<Rim>) -> f64 {
+        self.edges()
+            .map(|(p, q)| match rim {
+                None => 0.5 * p.perp_dot(q),
+                Some(rim) => rim.swept(p - rim.center, q - rim.center),
+            })
+            .sum()
+    }
 }
 
 impl Rim {
@@ -227,6 +248,7 @@ mod tests {
             [(-half, -half), (half, -half), (half, half), (-half, half)]
                 .map(|(x, y)| DVec2::new(x + 0.5, y - 0.25))
         };
+        let lit_area = |corners: &[DVec2], rim| Polygon::new(corners).area(rim);
         assert!((lit_area(&square(2.0), rim) - PI).abs() < 1e-12);
         assert!((lit_area(&square(0.5), rim) - 1.0).abs() < 1e-12);
         assert!((lit_area(&square(0.5), None) - 1.0).abs() < 1e-12);
