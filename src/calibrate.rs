@@ -8,7 +8,7 @@ use crate::shared::Costs;
 /// A challenger must be better by this share, whatever the noise: less is not worth a change.
 const GAIN_MIN: f64 = 0.005;
 /// How many standard errors of the median a challenger must be better by.
-const CONFIDENCE: f64 = 2.0;
+const CONFIDENCE: f64 = 2.5;
 /// Rounds below which nothing is certain.
 const ROUNDS_MIN: usize = 3;
 /// Standard deviation of a normal distribution per median absolute deviation, and standard error of its
@@ -65,7 +65,7 @@ fn deviation(values: &[f64]) -> f64 {
 }
 
 /// Measures all candidates `rounds` times, in turns, every other round backwards: drift of the machine
-/// hits all alike. Ends after a round, at the earliest the first, once `goes_on` is false.
+/// hits all alike. Ends after a round, at the earliest the third, once `goes_on` is false.
 ///
 /// # Errors
 /// What `measure` fails with.
@@ -82,7 +82,7 @@ pub fn race<T: Clone>(
         })
         .collect();
     for round in 0..rounds {
-        if round > 0 && !goes_on() {
+        if round >= ROUNDS_MIN && !goes_on() {
             break;
         }
         for turn in 0..candidates.len() {
@@ -124,7 +124,7 @@ impl Thoroughness {
     /// Measurements of a search, at most.
     pub fn measurements_max(&self) -> usize {
         (self.grid * self.grid + 1) * self.grid_rounds
-            + (FINALISTS + 1 + 9 * self.races_max) * self.rounds
+            + (FINALISTS + 3 + (9 + 2) * self.races_max) * self.rounds
     }
 }
 
@@ -204,7 +204,8 @@ pub fn search_costs(
 }
 
 impl Found {
-    /// A race against the incumbent. True: it has been beaten and replaced.
+    /// A race against the incumbent, and a rematch with the winner: of many challengers, chance alone makes
+    /// some win once. True: the incumbent has been beaten and replaced.
     fn challenge(
         &mut self,
         challengers: &[Costs],
@@ -216,9 +217,16 @@ impl Found {
         candidates.extend(challengers);
         let measured = race(&candidates, thoroughness.rounds, goes_on, measure)?;
         let first = winner(&measured);
-        self.costs = measured[first].candidate;
         self.races.push(measured);
-        Ok(first != 0)
+        if first == 0 {
+            return Ok(false);
+        }
+        let finalists = [self.costs, candidates[first]];
+        let rematch = race(&finalists, thoroughness.rounds, goes_on, measure)?;
+        let beaten = winner(&rematch) != 0;
+        self.costs = finalists[usize::from(beaten)];
+        self.races.push(rematch);
+        Ok(beaten)
     }
 }
 
