@@ -210,7 +210,7 @@ fn check_integration(
         largest = largest.max((found - share).abs());
         hidden[i] += f64::from(weight) * share;
         // No kernel, no lit and no umbra pixel may have lost an occluder to what was cut away.
-        if pixel.iter().all(|at| at % WHOLE_MAP_STEP == 0) {
+        if pixel.iter().all(|at| at.is_multiple_of(WHOLE_MAP_STEP)) {
             let whole = light.hidden_share(receiver, [0; 2], [MAP as i32 - 2; 2]);
             assert!(
                 (whole - share).abs() < TOLERANCE,
