@@ -251,7 +251,7 @@ fn a_quick_dry_run_is_clean_and_stores_nothing() {
         "--dry-run",
         "--validate",
         "--seconds",
-        "60",
+        "600",
     ]);
     assert_clean(&output);
     let said = text(&output.stdout);
