@@ -165,7 +165,7 @@ fn integrated(shot: &Shot) -> impl Iterator<Item = usize> {
     };
     let pixels = 0..SIZE * SIZE;
     pixels
-        .filter(move |i| (i % SIZE + i / SIZE) % step == 0)
+        .filter(move |i| (i % SIZE + i / SIZE).is_multiple_of(step))
         .map(|i| i as usize)
 }
 
