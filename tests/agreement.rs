@@ -160,7 +160,8 @@ fn grid_with_kernels_as_large_as_the_map() {
 /// Side faces, whose back-projection is of another kind.
 #[test]
 fn grid_from_close_above_with_side_faces() {
-    let base = base(128, 1);
+    // Larger maps have cells of contour beyond the turns that lavapipe allows a loop.
+    let base = base(64, 1);
     let mut shot = load("grid", 64, base.clone());
     shot.lights[0].center.y = 1.2;
     with_gpu(|gpu| {
