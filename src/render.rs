@@ -18,7 +18,8 @@ use crate::shot::Shot;
 use crate::technique::Recipe;
 use view::{ViewPasses, tiles};
 
-/// Cost model [Yang09 eq. 6], Q_n = 1, as calibrated on lavapipe.
+/// Cost model [Yang09 eq. 6], Q_n = 1. On lavapipe the time hardly depends on it as long as Q_v is not far
+/// above Q_e, and a search on a busy machine found nothing better; `halfshade calibrate` measures it elsewhere.
 pub const DEFAULT_COSTS: Costs = Costs {
     edge: 4.0,
     visibility: 2.0,

@@ -88,7 +88,7 @@ impl Default for Settings {
             technique: Technique::PacketContour,
             packet: (4, 4),
             leaf: Leaf::PerPixel,
-            mapping: Mapping::Lanes,
+            mapping: Mapping::Serial,
             split: 4,
             map: 512,
             footprint_pruning: true,

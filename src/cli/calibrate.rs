@@ -45,17 +45,17 @@ pub struct Args {
 /// [pixel] Packet sizes, and how pixels map to invocations: the built-in default, then the likeliest first,
 /// in case time runs out.
 const LAYOUTS: [((u32, u32), Mapping); 12] = [
+    ((4, 4), Mapping::Serial),
     ((4, 4), Mapping::Lanes),
-    ((2, 2), Mapping::Lanes),
-    ((4, 2), Mapping::Lanes),
-    ((2, 2), Mapping::Serial),
-    ((3, 3), Mapping::Lanes),
-    ((8, 4), Mapping::Lanes),
-    ((8, 8), Mapping::Lanes),
+    ((8, 4), Mapping::Serial),
     ((4, 2), Mapping::Serial),
     ((3, 3), Mapping::Serial),
-    ((4, 4), Mapping::Serial),
-    ((8, 4), Mapping::Serial),
+    ((2, 2), Mapping::Serial),
+    ((4, 2), Mapping::Lanes),
+    ((8, 4), Mapping::Lanes),
+    ((2, 2), Mapping::Lanes),
+    ((8, 8), Mapping::Lanes),
+    ((3, 3), Mapping::Lanes),
     ((8, 8), Mapping::Serial),
 ];
 /// Layouts of `--quick`.

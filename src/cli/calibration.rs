@@ -59,7 +59,8 @@ struct Stored {
 }
 
 impl Default for Calibration {
-    /// As measured on lavapipe.
+    /// One default for all devices, as measured on lavapipe, where serial packets are 1.2 to 1.7 times as
+    /// fast as none and `lanes` slower than none. A real GPU has wider and cheaper lanes: calibrate there.
     fn default() -> Self {
         let settings = Settings::default();
         Self {

@@ -43,6 +43,8 @@ const MAP: u32 = 128;
 pub struct Bench<'a> {
     gpu: &'a Arc<Gpu>,
     shots: Vec<Shot>,
+    /// Built-in shots that are too slow here.
+    left_out: Vec<&'static str>,
     /// By what pipelines are made for: a calibration less its costs.
     renderers: Vec<(Calibration, Vec<Renderer>)>,
     interrupted: &'a AtomicBool,
@@ -69,6 +71,7 @@ impl<'a> Bench<'a> {
         let mut bench = Self {
             gpu,
             shots: Vec::new(),
+            left_out: Vec::new(),
             renderers: Vec::new(),
             interrupted,
             bar,
@@ -84,8 +87,10 @@ impl<'a> Bench<'a> {
         }
         if files.is_empty() {
             for (name, bytes) in BUILT_IN {
-                let sized = bench.sized(name, bytes, quick)?;
-                bench.shots.extend(sized);
+                match bench.sized(name, bytes, quick)? {
+                    Some(shot) => bench.shots.push(shot),
+                    None => bench.left_out.push(name),
+                }
             }
         }
         Ok(bench)
@@ -208,8 +213,12 @@ impl<'a> Bench<'a> {
             .collect::<Vec<_>>()
             .join(", ");
         let settings = &self.shots[0].settings;
+        let left_out = match self.left_out.is_empty() {
+            true => String::new(),
+            false => format!("; too slow here: {}", self.left_out.join(", ")),
+        };
         format!(
-            "{} shot(s) ({sizes}), split {}, map {}",
+            "{} shot(s) ({sizes}), split {}, map {}{left_out}",
             self.shots.len(),
             settings.split,
             settings.map
