@@ -141,8 +141,8 @@ mod ulps {
     /// Where the receivers are: any place with all bits in use.
     const PLACE: DVec2 = DVec2::new(0.7654321, 0.5432109);
     /// [ulp] Half the side of the receivers' square.
-    const REACH: f64 = 48.0;
-    const SIDE: u32 = 48;
+    const REACH: f64 = 8.0;
+    const SIDE: u32 = 16;
     const MAP: u32 = 64;
     /// [visibility] Rounding of the sum of some hundred segments, each of the order of 1.
     const ROUNDING: f32 = 1e-5;
@@ -785,7 +785,7 @@ fn any_soup_has_visibilities_between_zero_and_one() {
         1..3u32,
     );
     with_gpu(|gpu| {
-        let result = runner(32).run(&soups, |(triangles, light, eye, split)| {
+        let result = runner(16).run(&soups, |(triangles, light, eye, split)| {
             let scene: Arc<Scene> = Triangles(triangles).floor([-3.0, 3.0], [-3.0, 3.0]).build();
             let camera = camera(eye + DVec3::new(0.1, 2.0, 3.0), DVec3::ZERO, 60.0);
             let image = render(gpu, &shot(scene, camera, light, 32, settings(64, split)));
