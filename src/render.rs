@@ -61,9 +61,9 @@ pub struct RenderOptions {
 /// Renders one shot any number of times. All allocation happens when it is created.
 pub struct Renderer {
     gpu: Arc<Gpu>,
-    shot: Shot,
-    options: RenderOptions,
-    plan: Plan,
+    /// The plan of a frame that draws every map, and of one that finds the last frame's map still there.
+    fresh: Plan,
+    kept: Plan,
     resources: Resources,
     gbuffer: GraphicsPass,
     views: BTreeMap<(Variant, Recipe), ViewPasses>,
@@ -88,12 +88,14 @@ impl Renderer {
     /// be had.
     pub fn new(gpu: &Arc<Gpu>, shot: &Shot, options: RenderOptions) -> Result<Self> {
         options.costs.validate()?;
-        let plan = plan(shot, options.outputs, &gpu.limits, false)?;
+        let fresh = plan(shot, options.outputs, &gpu.limits, false)?;
+        let kept = plan(shot, options.outputs, &gpu.limits, true)?;
+        let plan = &fresh;
         let exposure = Exposure {
             light_count: plan.lights.len() as u32,
             ..options.exposure
         };
-        let resources = resources::create(gpu, &plan, shot, options.costs, exposure)?;
+        let resources = resources::create(gpu, plan, shot, options.costs, exposure)?;
         let mut views = BTreeMap::new();
         for light in &plan.lights {
             for planned in &light.views {
@@ -101,7 +103,7 @@ impl Renderer {
                 if let Entry::Vacant(vacant) = views.entry(key) {
                     vacant.insert(ViewPasses::new(
                         gpu,
-                        &plan,
+                        plan,
                         &shot.settings,
                         &light.recipe,
                         planned.variant,
@@ -110,7 +112,7 @@ impl Renderer {
                 }
             }
         }
-        let constants = specialization::of_frame(&plan);
+        let constants = specialization::of_frame(plan);
         let compute =
             |name: &str, shader: &str| ComputePass::new(gpu, name, shader, &constants, &resources);
         let state = GraphicsState {
@@ -129,9 +131,8 @@ impl Renderer {
                 .transpose()?,
             recorder: Recorder::new(gpu, recorded)?,
             gpu: gpu.clone(),
-            shot: shot.clone(),
-            options,
-            plan,
+            fresh,
+            kept,
             resources,
             views,
             retained: false,
@@ -144,7 +145,11 @@ impl Renderer {
 
     /// The plan of the next frame.
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        if self.retained {
+            &self.kept
+        } else {
+            &self.fresh
+        }
     }
 
     /// Changes the cost model's constants from the next frame on.
@@ -153,16 +158,12 @@ impl Renderer {
     /// A constant is out of range (see [`Costs::validate`]), or a Vulkan call failed.
     pub fn set_costs(&mut self, costs: Costs) -> Result<()> {
         costs.validate()?;
-        self.resources.buffer("costs")?.upload(&[costs])?;
-        self.options.costs = costs;
-        Ok(())
+        self.resources.buffer("costs")?.upload(&[costs])
     }
 
     /// Makes the next frame draw every map anew, as if something had changed.
-    pub fn invalidate(&mut self) -> Result<()> {
+    pub fn invalidate(&mut self) {
         self.retained = false;
-        self.plan = plan(&self.shot, self.options.outputs, &self.gpu.limits, false)?;
-        Ok(())
     }
 
     /// Renders a frame and waits for it.
@@ -174,9 +175,8 @@ impl Renderer {
         self.record(None)?;
         let timings = self.recorder.submit_and_wait()?;
         self.check_finished()?;
-        let plan = self.plan.clone();
+        let plan = self.plan().clone();
         self.retained = true;
-        self.plan = crate::plan::plan(&self.shot, self.options.outputs, &self.gpu.limits, true)?;
         Ok(Frame { timings, plan })
     }
 
@@ -186,7 +186,7 @@ impl Renderer {
     /// # Errors
     /// As for [`Self::render`].
     pub fn render_view(&mut self, view: u32) -> Result<()> {
-        self.invalidate()?;
+        self.invalidate();
         self.recorder.begin()?;
         self.record(Some(view))?;
         self.recorder.submit_and_wait()?;
@@ -210,7 +210,12 @@ impl Renderer {
 
     /// `only`: the view to which the frame is limited.
     fn record(&mut self, only: Option<u32>) -> Result<()> {
-        let (plan, resources, recorder) = (&self.plan, &self.resources, &mut self.recorder);
+        let plan = if self.retained {
+            &self.kept
+        } else {
+            &self.fresh
+        };
+        let (resources, recorder) = (&self.resources, &mut self.recorder);
         let frame = Push::default();
         let colors = ["position_world", "normal_world", "albedo"].map(|name| resources.image(name));
         let [position, normal, albedo] = colors;
@@ -286,13 +291,13 @@ impl Renderer {
     }
 
     fn pixel_count(&self) -> usize {
-        self.plan.size.0 as usize * self.plan.size.1 as usize
+        self.fresh.size.0 as usize * self.fresh.size.1 as usize
     }
 
     /// A light's visibility, row by row from the top: 0 umbra … 1 lit, NaN where there is no surface.
     pub fn visibility(&self, light: usize) -> Result<Vec<f32>> {
         let pixels = self.pixel_count();
-        let all = self.read_buffer("visibility", pixels * self.plan.lights.len())?;
+        let all = self.read_buffer("visibility", pixels * self.fresh.lights.len())?;
         Ok(all[light * pixels..(light + 1) * pixels].to_vec())
     }
 
@@ -308,6 +313,6 @@ impl Renderer {
 
     /// What the device found out about each view.
     pub fn fits(&self) -> Result<Vec<Fit>> {
-        self.read_buffer("fits", self.plan.views().count())
+        self.read_buffer("fits", self.fresh.views().count())
     }
 }

@@ -143,7 +143,7 @@ fn timed_frames(
     let rounds = args.repeat + u32::from(warm_up);
     let bar = progress::bar("rendering", u64::from(rounds));
     for round in 0..rounds {
-        renderer.invalidate()?;
+        renderer.invalidate();
         let before = renderer.counters()?;
         let frame = renderer.render()?;
         if round > 0 || !warm_up {
