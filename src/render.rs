@@ -270,22 +270,33 @@ impl Renderer {
 
     /// What a buffer holds after a frame.
     pub fn read_buffer<T: bytemuck::Pod>(&self, name: &str, count: usize) -> Result<Vec<T>> {
+        let buffer = self.resources.buffer(name)?;
         let bytes = (count * size_of::<T>()) as u64;
-        let target = Buffer::readback(&self.gpu, &format!("{name} (readback)"), bytes)?;
-        let mut recorder = Recorder::new(&self.gpu, 0)?;
-        recorder.begin()?;
-        recorder.copy_buffer("readback", self.resources.buffer(name)?, &target);
-        recorder.submit_and_wait()?;
-        target.read(count)
+        self.read_back(name, bytes, count, |recorder, target| {
+            recorder.copy_buffer("readback", buffer, target)
+        })
     }
 
     /// What an image holds after a frame: all layers, row by row, `count` values.
     pub fn read_image<T: bytemuck::Pod>(&self, name: &str, count: usize) -> Result<Vec<T>> {
         let image = self.resources.image(name)?;
-        let target = Buffer::readback(&self.gpu, &format!("{name} (readback)"), image.bytes())?;
+        self.read_back(name, image.bytes(), count, |recorder, target| {
+            recorder.copy_image("readback", image, target)
+        })
+    }
+
+    /// Copies `bytes` into memory that the host can read, waits, and reads `count` values.
+    fn read_back<T: bytemuck::Pod>(
+        &self,
+        name: &str,
+        bytes: u64,
+        count: usize,
+        copy: impl FnOnce(&mut Recorder, &Buffer),
+    ) -> Result<Vec<T>> {
+        let target = Buffer::readback(&self.gpu, &format!("{name} (readback)"), bytes)?;
         let mut recorder = Recorder::new(&self.gpu, 0)?;
         recorder.begin()?;
-        recorder.copy_image("readback", image, &target);
+        copy(&mut recorder, &target);
         recorder.submit_and_wait()?;
         target.read(count)
     }
