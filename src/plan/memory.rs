@@ -1,0 +1,123 @@
+//! The sizes of a frame's resources, against what the device allows.
+
+use super::Plan;
+use crate::error::{Error, Result};
+use crate::gpu::Limits;
+use crate::shared::{self, Fit, Kernel, Lists, Packet, SECTOR_STEPS, View};
+use crate::shot::Shot;
+use crate::technique::{Recipe, Work};
+
+impl Plan {
+    pub(super) fn list_resources(&mut self, shot: &Shot) {
+        let scene = &shot.scene;
+        let pixels = u64::from(self.size.0) * u64::from(self.size.1);
+        let map = u64::from(self.map) * u64::from(self.map);
+        let views = self.views().count() as u64;
+        let tables = self.views().filter(|view| view.sectors.is_some()).count() as u64;
+        let any = |test: fn(&Recipe) -> bool| self.lights.iter().any(|light| light.needs(test));
+        let triangles = scene.triangles.len() as u64;
+        let textured = u64::from(self.textured);
+        let per_pixel = |needed: bool, bytes: usize| if needed { pixels * bytes as u64 } else { 0 };
+        let texels: usize = scene
+            .textures
+            .iter()
+            .map(|texture| texture.rgba.len())
+            .sum();
+        let grid = u64::from(self.size.0.div_ceil(shot.settings.packet.0))
+            * u64::from(self.size.1.div_ceil(shot.settings.packet.1));
+        self.resources = vec![
+            ("positions", scene.positions.len() as u64 * 12),
+            ("triangles", triangles * 12),
+            ("triangle_surfaces", triangles * 4),
+            (
+                "surfaces",
+                scene.materials.len() as u64 * size_of::<shared::Surface>() as u64,
+            ),
+            ("texcoords", textured * scene.texcoords.len() as u64 * 8),
+            (
+                "vertex_surfaces",
+                if self.masked {
+                    scene.positions.len() as u64 * 4
+                } else {
+                    0
+                },
+            ),
+            ("texels", textured * texels as u64),
+            ("camera_depth", pixels * 4),
+            ("position_world", pixels * 16),
+            ("normal_world", pixels * 16),
+            ("albedo", pixels * 4),
+            ("caster_indices", if views > 0 { triangles * 12 } else { 0 }),
+            ("shadow_map", map * 4),
+            ("mssm", map * 8 * u64::from(self.levels)),
+            (
+                "kernels",
+                per_pixel(any(|recipe| recipe.mssm), size_of::<Kernel>()),
+            ),
+            (
+                "packets",
+                if any(|recipe| recipe.has(Work::PacketList)) {
+                    grid * size_of::<Packet>() as u64
+                } else {
+                    0
+                },
+            ),
+            (
+                "pixels",
+                per_pixel(any(|recipe| recipe.has(Work::PixelList)), 4),
+            ),
+            ("occlusion", per_pixel(views > 0, 4)),
+            ("views", views * size_of::<View>() as u64),
+            ("fits", views * size_of::<Fit>() as u64),
+            ("lists", views * size_of::<Lists>() as u64),
+            ("sectors", tables * u64::from(SECTOR_STEPS + 1) * 4),
+            ("visibility", pixels * 4 * self.lights.len() as u64),
+            ("picture", per_pixel(self.outputs.picture, 4)),
+        ];
+        self.resources.retain(|&(_, bytes)| bytes > 0);
+    }
+
+    /// [byte] Of all resources; they live as long as the frame, so this is the peak.
+    pub fn memory_bytes(&self) -> u64 {
+        self.resources.iter().map(|&(_, bytes)| bytes).sum()
+    }
+
+    pub(super) fn check(&self, limits: &Limits) -> Result<()> {
+        let (width, height) = self.size;
+        if width.max(height) > limits.image_side {
+            return Err(Error::Unsupported(format!(
+                "an image of {width}x{height} is more than the device's {} pixels a side; choose a smaller --size",
+                limits.image_side
+            )));
+        }
+        let images = [
+            "camera_depth",
+            "position_world",
+            "normal_world",
+            "albedo",
+            "shadow_map",
+            "mssm",
+        ];
+        for &(name, bytes) in &self.resources {
+            let (limit, what) = if images.contains(&name) {
+                (limits.image_bytes, "image")
+            } else {
+                (limits.buffer_bytes, "buffer")
+            };
+            if bytes > limit {
+                return Err(Error::Unsupported(format!(
+                    "{name} takes {bytes} bytes and the device's largest {what} has {limit}; \
+                     choose a smaller --size or a smaller scene"
+                )));
+            }
+        }
+        if self.memory_bytes() > limits.memory_bytes {
+            return Err(Error::Unsupported(format!(
+                "the frame takes {} bytes and the device has {}; choose a smaller --map or --size",
+                self.memory_bytes(),
+                limits.memory_bytes
+            )));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,102 @@
+//! What a plan leaves out, and why.
+
+use super::{Omission, Outcome, Plan};
+use crate::shot::Shot;
+use crate::technique::Work;
+
+impl Plan {
+    fn omit(&mut self, what: impl Into<String>, reason: impl Into<String>) {
+        self.omissions.push(Omission {
+            what: what.into(),
+            reason: reason.into(),
+        });
+    }
+
+    pub(super) fn list_omissions(&mut self, shot: &Shot, retained: bool) {
+        if !self.masked {
+            self.omit(
+                "fragment shader of the shadow maps",
+                "no material is alpha-masked",
+            );
+        }
+        if !self.textured {
+            let reason = if shot.scene.textures.is_empty() {
+                "no material has a texture"
+            } else {
+                "only visibility is asked for"
+            };
+            self.omit("textures and texture coordinates", reason);
+        }
+        if !self.outputs.picture {
+            self.omit("shade", "only visibility is asked for");
+        }
+        if retained {
+            self.omit(
+                "receivers, casters, fit, shadow_map, mssm",
+                "nothing that the view depends on has changed since the last frame",
+            );
+        }
+        for index in 0..self.lights.len() {
+            self.omit_of_light(shot, index);
+        }
+    }
+
+    fn omit_of_light(&mut self, shot: &Shot, index: usize) {
+        let planned = &self.lights[index];
+        let name = planned.name.clone();
+        match planned.outcome {
+            Outcome::Dark => {
+                return self.omit(
+                    format!("{name}: everything"),
+                    "no visible surface faces it: visibility 0",
+                );
+            }
+            Outcome::Unshadowed => {
+                return self.omit(
+                    format!("{name}: shadow maps"),
+                    "nothing can cast a shadow on what is visible: visibility 1",
+                );
+            }
+            Outcome::Shadowed => {}
+        }
+        let one_view = planned.views.len() == 1;
+        let faces = planned.views.len() / planned.part_count.max(1);
+        let parts = planned.part_count as u32;
+        let recipe = planned.recipe.clone();
+        if shot.lights[index].is_point() {
+            self.omit(
+                format!("{name}: mssm, kernels, packets"),
+                "the light has no extent: its shadow is hard",
+            );
+        }
+        if one_view {
+            self.omit(format!("{name}: accumulation"), "it has a single view");
+        }
+        if faces == 1 {
+            self.omit(
+                format!("{name}: side faces"),
+                "every receiver lies within 60° of the light's axis",
+            );
+        }
+        let cells = shot.settings.split * shot.settings.split;
+        if parts < cells && !shot.lights[index].is_point() {
+            self.omit(
+                format!("{name}: {} sub-lights", cells - parts),
+                "the disc's rim leaves nothing of them",
+            );
+        }
+        if recipe.has(Work::PixelList) && !recipe.has(Work::PacketList) {
+            self.omit(
+                format!("{name}: packet_visibility"),
+                "a packet is a single pixel",
+            );
+        }
+        let wanted = (self.map.max(2) - 1).ilog2() + 2;
+        if recipe.mssm && self.levels < wanted {
+            self.omit(
+                format!("{name}: mssm levels {} to {}", self.levels, wanted - 1),
+                "the device's largest image does not hold them; larger kernels start from several nodes",
+            );
+        }
+    }
+}
