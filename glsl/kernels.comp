@@ -20,8 +20,8 @@ layout(binding = 6, scalar) writeonly buffer Kernels { Kernel kernels[]; };
 layout(binding = 7, scalar) buffer Occlusion { float occlusion[]; };
 layout(binding = 8, scalar) buffer CountersBlock { Counters counters; };
 
-// Rounds of query and shrinking; the gain of a fifth is below a texel in all scenes seen.
-const int ROUNDS = 4;
+// Queries that shrink a kernel; the gain of a fifth is below a texel in all scenes seen.
+const int REFINEMENTS = 4;
 
 Kernel kernel_of(View view, Fit fit, Receiver receiver) {
     int size = int(view.map_size);
@@ -30,7 +30,7 @@ Kernel kernel_of(View view, Fit fit, Receiver receiver) {
     float depth_max = 1.0;
     Cells cells;
     vec2 range = vec2(0.0);
-    for (int round = 0; round < ROUNDS; ++round) {
+    for (int round = 0; round < REFINEMENTS; ++round) {
         if (depth_max <= receiver.biased) return kernel;
         cells = kernel_cells(view, receiver, depth_max);
         if (any(greaterThan(cells.first, cells.last))) return kernel;

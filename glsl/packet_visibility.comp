@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
-// Visibility of packets of w×h pixels: the MSSM is walked with a stack, contour cells are extracted once
+// Visibility of packets of w×h pixels: the MSSM is walked with a stack, contour edges are extracted once
 // and integrated for each pixel [Yang09 §4.1, §4.2, alg. 2 and 3]. With packets of 1×1 it works off
 // the pixel list.
 #include "pass.glsl"
@@ -11,6 +11,8 @@
 #include "mssm_levels.glsl"
 #include "mssm.glsl"
 #include "kernel.glsl"
+#include "walk.glsl"
+#include "count.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
@@ -28,17 +30,28 @@ layout(binding = 10, scalar) buffer Occlusion { float occlusion[]; };
 layout(binding = 11, scalar) readonly buffer Sectors { float sectors[]; };
 layout(binding = 12, scalar) buffer CountersBlock { Counters counters; };
 layout(binding = 13, scalar) buffer ListsBlock { Lists lists[]; };
+layout(binding = 14, scalar) buffer Partial { float partial[]; };
+layout(binding = 15, scalar) buffer ProgressBlock { Progress progress[]; };
 #include "lists.glsl"
 #include "radial.glsl"
 
 const uint PIXELS_PER_PACKET = PACKET_WIDTH * PACKET_HEIGHT;
+
+// [edge] Edges are integrated in batches, so that what is held of a pixel is fetched once for all of a batch.
+const uint BATCH = 4u;
 
 // The pixels that this invocation integrates; those that are no penumbra pixels are not held.
 bool is_held[HELD];
 // One more than the last that is. Not a constant, or drivers unroll the loops and compile for half a minute.
 uint held_end = 0u;
 uint pixel_index[HELD];
-Receiver held[HELD];
+// What is held of a receiver, field by field: fields that a map parallel to the light does not need cost nothing.
+vec2 held_t[HELD];
+float held_d[HELD];
+float held_biased[HELD];
+vec2 held_ku[HELD];
+vec2 held_kv[HELD];
+vec2 held_b[HELD];
 float beyond[HELD];
 
 // Back-projection scale of a map that is parallel to the light, which all receivers share.
@@ -46,16 +59,32 @@ vec2 kappa;
 
 uint nodes_visited = 0u;
 uint edges_extracted = 0u;
+uint samples_read = 0u;
 
 void hold(View view, Fit fit, uint slot, uint index) {
     ivec2 pixel = ivec2(index % frame.size.x, index / frame.size.x);
     vec3 to_point = texelFetch(position_world, pixel, 0).xyz - view.center;
     vec3 normal = texelFetch(normal_world, pixel, 0).xyz;
-    is_held[slot] = true;
     held_end = slot + 1u;
     pixel_index[slot] = index;
-    held[slot] = project(view, fit, to_point, normal);
-    beyond[slot] = 0.0;
+    Receiver receiver = project(view, fit, to_point, normal);
+    held_t[slot] = receiver.t;
+    held_d[slot] = receiver.d;
+    held_biased[slot] = receiver.biased;
+    if (OBLIQUE) held_ku[slot] = receiver.ku;
+    if (OBLIQUE) held_kv[slot] = receiver.kv;
+    if (OBLIQUE) held_b[slot] = receiver.b;
+    beyond[slot] = is_first_round() ? 0.0 : partial[index];
+    is_held[slot] = true;
+}
+
+Receiver receiver_of(uint slot) {
+    Receiver receiver = Receiver(held_t[slot], held_d[slot], held_biased[slot], vec2(kappa.x, 0.0), vec2(0.0, kappa.y),
+                                 vec2(0.0));
+    if (OBLIQUE) receiver.ku = held_ku[slot];
+    if (OBLIQUE) receiver.kv = held_kv[slot];
+    if (OBLIQUE) receiver.b = held_b[slot];
+    return receiver;
 }
 
 // Whether pixel `i` of the packet is to be integrated, and its index.
@@ -70,7 +99,7 @@ bool penumbra_pixel(Packet packet, uint i, out uint index) {
 // A single pixel as a packet; its receiver is held.
 Packet packet_of_pixel(uint index) {
     Kernel kernel = kernels[index];
-    Receiver receiver = held[0];
+    Receiver receiver = receiver_of(0u);
     return Packet(index, kernel.first, kernel.last, receiver.biased, receiver.biased, receiver.d, receiver.t.xyxy);
 }
 
@@ -93,48 +122,18 @@ bool misses_light(View view, Packet packet, ivec2 node, int side, float depth_ma
     vec2 reach = (depth_max - packet.depth_far) / kappa;
     bool misses = any(greaterThan(lower, packet.centers.zw + reach * view.extent.zw))
                || any(lessThan(upper, packet.centers.xy + reach * view.extent.xy));
-    if (OBLIQUE) misses = PIXELWISE && misses_obliquely(view, held[0], lower, upper, depth_max);
+    if (OBLIQUE) misses = PIXELWISE && misses_obliquely(view, receiver_of(0u), lower, upper, depth_max);
     return misses;
 }
 
-// A walk through the quadtree below one root after the other, depth first. The stack is one integer: two
-// bits for each level between the root and the current node, which say which child it is
-// [Yang09 alg. 3].
-struct Walk {
-    ivec2 root;
-    ivec2 node;
-    int top;
-    int level;
-    uint stack;
-    bool ended;
-};
-
 // Starts at the lowest level whose node at the kernel's corner covers the kernel, as far as that level is
-// built; beyond it there are several roots.
-Walk start_of(Packet packet, int level_count) {
+// built; beyond it there are several roots. Later rounds go on where the one before stood.
+Walk start_of(Packet packet, int level_count, uint entry) {
     ivec2 first = unpacked(packet.first);
     ivec2 side = unpacked(packet.last) - first + 1;
     int top = min(level_covering(max(side.x, side.y)), level_count - 1);
-    return Walk(first, first, top, top, 0u, false);
-}
-
-// Goes on to the next node that is not below this one.
-void pass_by(inout Walk walk, ivec2 first, ivec2 last) {
-    // Up to the nearest ancestor that is not its parent's last child.
-    int pops = min(findLSB(~walk.stack) >> 1, walk.top - walk.level);
-    walk.node -= ivec2(((1 << pops) - 1) << walk.level);
-    walk.level += pops;
-    walk.stack = (walk.stack >> (2 * pops)) + 1u;
-    // Children 0 … 3 stand at (0, 0), (1, 0), (0, 1), (1, 1).
-    int side = 1 << walk.level;
-    walk.node += (walk.stack & 1u) != 0u ? ivec2(side, 0) : ivec2(-side, side);
-    if (walk.level == walk.top) {
-        walk.root.x += side;
-        if (walk.root.x > last.x) walk.root = ivec2(first.x, walk.root.y + side);
-        walk.node = walk.root;
-        walk.stack = 0u;
-        walk.ended = walk.root.y > last.y;
-    }
+    if (is_first_round()) return walk_from(first, top);
+    return walk_on(progress[entry], top);
 }
 
 // Walks to the next cell with a contour and past it. False: there is none left.
@@ -144,72 +143,150 @@ bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
     int size = int(view.map_size);
     bool found = false;
     uint turns = 0u;
-    while (!found && !walk.ended && turns < STEPS_MAX) {
+    while (!found && !walk.ended && !out_of_turns(turns)) {
         ++turns;
         vec2 bounds = mssm_fetch(mssm, walk.node, walk.level, size);
         bool inside = all(lessThanEqual(walk.node, last));
-        bool descend = inside && bounds.y > packet.depth_min && bounds.x <= packet.depth_max
-                    && !(FOOTPRINT && misses_light(view, packet, walk.node, 1 << walk.level, bounds.y));
+        bool open = inside && bounds.y > packet.depth_min && bounds.x <= packet.depth_max
+                 && !(FOOTPRINT && misses_light(view, packet, walk.node, 1 << walk.level, bounds.y));
         nodes_visited += uint(inside);
-        found = descend && walk.level == 0;
+        found = open && walk.level == 0;
         if (found) cell = walk.node;
-        if (descend && !found) {
-            --walk.level;
-            walk.stack <<= 2;
-        } else {
-            pass_by(walk, first, last);
-        }
+        if (open && !found) descend(walk);
+        else pass_by(walk, first, last);
     }
     steps += subgroupMax(turns) + 1u;
     return found;
 }
 
-// Integrates one segment of a cell's contour for each pixel. More: some pixel's contour has another one.
-// False: the pixels disagree about the contour and the leaf rule is to reprocess.
-bool integrate(View view, Packet packet, ivec2 cell, uint segment, out bool more) {
-    vec4 depths = samples_of(shadow_map, cell);
-    uint mask = mask_of(depths, packet.depth_max);
-    bool agreed = PIXELWISE || mask == mask_of(depths, packet.depth_min);
-    if (agreed) edges_extracted += uint(segment < segment_count(mask));
-    more = false;
-    for (uint i = 0u; i < held_end; ++i) {
-        uint own = mask_of(depths, REPROCESS ? packet.depth_max : held[i].biased);
-        own = is_held[i] ? own : 0u;
-        beyond[i] += segment_beyond(view, held[i], cell, depths, own, segment);
-        edges_extracted += uint(!agreed && segment < segment_count(own));
-        more = more || segment + 1u < segment_count(own);
+// Where the extraction of edges stands: the walk, and the cell that it came to last.
+struct Cursor {
+    Walk walk;
+    ivec2 cell;
+    vec4 depths;
+    uint mask;
+    uint segment;
+    // The cell has a second segment.
+    bool more;
+    // All pixels of the packet see the same contour in the cell.
+    bool agreed;
+};
+
+bool at_end(Cursor cursor) { return cursor.walk.ended && !cursor.more; }
+
+// Goes on to the next edge. False: there is none left, or the packet's pixels disagree about it.
+bool next_edge(View view, Packet packet, inout Cursor cursor) {
+    cursor.segment = cursor.more ? 1u : 0u;
+    bool found = cursor.more;
+    if (!cursor.more) found = next_cell(view, packet, cursor.walk, cursor.cell);
+    cursor.depths = samples_of(shadow_map, cursor.cell);
+    cursor.mask = found ? mask_of(cursor.depths, packet.depth_max) : 0u;
+    cursor.agreed = PIXELWISE || !found || cursor.mask == mask_of(cursor.depths, packet.depth_min);
+    uint segments = cursor.agreed ? segment_count(cursor.mask) : 0u;
+    cursor.more = cursor.segment + 1u < segments;
+    samples_read += found ? 4u : 0u;
+    return cursor.segment < segments;
+}
+
+// Collects edges until the batch is full, the walk ends, or a cell is found whose contour the packet's pixels
+// disagree about; that one is left to the caller. Returns the number of edges.
+uint collect(View view, Packet packet, inout Cursor cursor, inout Edge batch[BATCH]) {
+    uint count = 0u;
+    cursor.agreed = true;
+    while (count < BATCH && cursor.agreed && !at_end(cursor) && (cursor.more || !out_of_turns(0u))) {
+        ++steps;
+        bool found = next_edge(view, packet, cursor);
+        Edge edge = edge_of(cursor.cell, cursor.depths, cursor.mask, cursor.segment);
+        [[unroll]] for (uint i = 0u; i < BATCH; ++i) {
+            bool here = i == count;
+            batch[i].a = here ? edge.a : batch[i].a;
+            batch[i].b = here ? edge.b : batch[i].b;
+        }
+        count += uint(found);
+    }
+    ++steps;
+    edges_extracted += count;
+    return count;
+}
+
+// Adds a batch of edges up for each pixel.
+void integrate(View view, Edge batch[BATCH], uint count) {
+    for (uint slot = 0u; slot < held_end && count > 0u; ++slot) {
+        Receiver receiver = receiver_of(slot);
+        float sum = 0.0;
+        [[unroll]] for (uint i = 0u; i < BATCH; ++i) {
+            float share = edge_beyond(view, receiver, batch[i]);
+            sum += i < count ? share : 0.0;
+        }
+        beyond[slot] += sum;
     }
     steps += HELD + 1u;
-    return agreed || !REPROCESS;
 }
 
-// The loops are nested so that invocations side by side integrate together and walk together; the rare
-// second segment of a cell is a turn of its own. False: to be reprocessed, since the pixels disagree or
-// the walk is longer than the driver lets it be.
-bool traverse(View view, Fit fit, Packet packet) {
-    Walk walk = start_of(packet, int(fit.level_count));
-    ivec2 cell = ivec2(0);
-    uint segment = 0u;
-    bool more = false;
-    bool agreed = true;
-    while (agreed && (more || !walk.ended) && steps < STEPS_MAX) {
-        ++steps;
-        segment = more ? segment + 1u : 0u;
-        bool found = more;
-        if (!more) found = next_cell(view, packet, walk, cell);
-        if (found) agreed = integrate(view, packet, cell, segment, more);
+// Adds the next edge up for a single pixel: without the loops, which would cost more than they save.
+void integrate_next(View view, Packet packet, inout Cursor cursor) {
+    bool found = next_edge(view, packet, cursor);
+    Edge edge = edge_of(cursor.cell, cursor.depths, cursor.mask, cursor.segment);
+    float share = edge_beyond(view, receiver_of(0u), edge);
+    beyond[0] += found ? share : 0.0;
+    edges_extracted += uint(found);
+}
+
+// A cell whose contour the pixels disagree about: each has its own [algorithm.md §6, `per-pixel`].
+void integrate_apart(View view, Cursor cursor) {
+    bool more = !cursor.agreed;
+    for (uint segment = 0u; more; ++segment) {
+        more = false;
+        for (uint slot = 0u; slot < held_end; ++slot) {
+            Receiver receiver = receiver_of(slot);
+            uint mask = mask_of(cursor.depths, receiver.biased);
+            beyond[slot] += segment_beyond(view, receiver, cursor.cell, cursor.depths, mask, segment);
+            edges_extracted += uint(is_held[slot] && segment < segment_count(mask));
+            more = more || segment + 1u < segment_count(mask);
+        }
     }
-    bool finished = !more && walk.ended;
-    if (PIXELWISE && !finished) atomicAdd(fits[push.index].unfinished, 1u);
-    return agreed && finished;
+    // Hardly ever two segments; counted as if always.
+    steps += subgroupMax(cursor.agreed ? 0u : 2u * HELD) + 2u;
 }
 
-void count(bool finished) {
-    uint before = atomicAdd(counters.nodes_visited.x, nodes_visited);
-    if (before + nodes_visited < before) atomicAdd(counters.nodes_visited.y, 1u);
-    before = atomicAdd(counters.edges_extracted.x, edges_extracted);
-    if (before + edges_extracted < before) atomicAdd(counters.edges_extracted.y, 1u);
-    if (!finished) atomicAdd(counters.reprocessed_packets, 1u);
+// The loops are nested so that invocations side by side walk together and integrate together. False: to be
+// reprocessed, since the pixels disagree.
+bool traverse(View view, Fit fit, Packet packet, inout Walk walk) {
+    Cursor cursor = Cursor(walk, ivec2(0), vec4(0.0), 0u, 0u, false, true);
+    Edge batch[BATCH];
+    [[unroll]] for (uint i = 0u; i < BATCH; ++i) batch[i] = Edge(vec3(0.0), vec3(0.0));
+    while (!at_end(cursor) && (cursor.agreed || !REPROCESS) && (cursor.more || !out_of_turns(0u))) {
+        ++steps;
+        if (PIXELWISE) {
+            integrate_next(view, packet, cursor);
+        } else {
+            uint count = collect(view, packet, cursor, batch);
+            integrate(view, batch, count);
+            if (!REPROCESS) integrate_apart(view, cursor);
+        }
+    }
+    walk = cursor.walk;
+    return cursor.agreed || !REPROCESS;
+}
+
+// What a walk to its end has found out about a pixel.
+void conclude(View view, uint slot) {
+    float occluded = view.weight * occluded_share(view, receiver_of(slot), shadow_map, beyond[slot]);
+    if (ACCUMULATE) occlusion[pixel_index[slot]] += occluded;
+    else occlusion[pixel_index[slot]] = occluded;
+}
+
+// The next round goes on with this entry.
+void put_off(uint entry, uint group) {
+    if (PIXELWISE) REACH(lists[push.index].pixel_groups[push.level + 1u], group)
+    else REACH(lists[push.index].packet_groups[push.level + 1u], group)
+}
+
+void count(bool reprocessed) {
+    COUNT_WIDE(counters.nodes_visited, nodes_visited)
+    COUNT_WIDE(counters.edges_extracted, edges_extracted)
+    COUNT_WIDE(counters.samples_read, nodes_visited + samples_read)
+    if (reprocessed) atomicAdd(counters.reprocessed_packets, 1u);
 }
 
 void main() {
@@ -226,6 +303,9 @@ void main() {
     }
     uint entry = group * packets_per_group() + slot;
     if (entry >= (PIXELWISE ? lists[push.index].pixel_count : lists[push.index].packet_count)) return;
+    // Lanes may be out of turns at different places.
+    uint place = LANES && !PIXELWISE ? entry * PIXELS_PER_PACKET + lane : entry;
+    if (!is_first_round() && progress[place].next == FINISHED) return;
 
     Packet packet;
     bool speaks = true;  // for the packet, in `counters`
@@ -248,15 +328,21 @@ void main() {
         }
     }
 
-    bool finished = traverse(view, fit, packet);
+    Walk walk = start_of(packet, int(fit.level_count), place);
+    bool agreed = traverse(view, fit, packet, walk);
+    bool put_by = agreed && !walk.ended && !is_last_round();
+    bool reprocessed = !put_by && !(agreed && walk.ended);
     for (uint i = 0u; i < held_end; ++i) {
-        if (is_held[i] && finished) {
-            float occluded = view.weight * occluded_share(view, held[i], shadow_map, beyond[i]);
-            if (ACCUMULATE) occlusion[pixel_index[i]] += occluded;
-            else occlusion[pixel_index[i]] = occluded;
-        } else if (is_held[i]) {
-            append_pixel(pixel_index[i]);
-        }
+        if (!is_held[i]) continue;
+        if (put_by) partial[pixel_index[i]] = beyond[i];
+        else if (!reprocessed) conclude(view, i);
+        else if (!PIXELWISE) append_pixel(pixel_index[i]);
     }
-    if (COUNT && speaks) count(finished);
+    if (put_by) put_off(entry, group);
+    if (ROUNDS > 1u) {
+        progress[place] = progress_of(walk);
+        if (!put_by) progress[place].next = FINISHED;
+    }
+    if (PIXELWISE && reprocessed) atomicAdd(fits[push.index].unfinished, 1u);
+    if (COUNT && speaks) count(reprocessed);
 }

@@ -2,15 +2,19 @@
 //! and a recorder that labels, times and orders passes.
 
 mod device;
+mod draw;
 mod memory;
 mod pass;
+mod physical;
 mod recorder;
 mod requirements;
 mod shader;
 mod validation;
 
-pub use device::{DeviceInfo, Gpu, Options, list_devices};
+pub use device::{Gpu, Options};
+pub use draw::{Attachments, Draw};
 pub use memory::{Buffer, Image, ImageKind, Resource, Resources};
 pub use pass::{ComputePass, GraphicsPass, GraphicsState, Specialization};
-pub use recorder::{Attachments, Draw, Groups, Recorder, Timings};
+pub use physical::{DeviceInfo, list_devices};
+pub use recorder::{Groups, Recorder, Timings};
 pub use requirements::Limits;

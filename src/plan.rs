@@ -11,10 +11,9 @@ mod views;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
-use crate::shared::{self, LEVELS_MAX, View};
+use crate::shared::{self, LEVELS_MAX, ROUNDS_MAX, View};
 use crate::shot::Shot;
-use crate::sub_light::sub_lights;
-use crate::technique::Recipe;
+use crate::technique::{self, Recipe};
 use camera::Frustum;
 use survey::{Survey, survey};
 use views::{view_plan, whole_light};
@@ -38,6 +37,8 @@ pub struct Plan {
     pub levels: u32,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
+    /// [turn] After which the driver ends loops.
+    pub loop_turns: u32,
     /// [pixel] Width and height of a packet.
     pub packet: (u32, u32),
     /// The scene has textures that the frame needs.
@@ -131,6 +132,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
         outputs,
         levels: 0,
         map: 0,
+        loop_turns: limits.loop_turns,
         packet: shot.settings.packet,
         textured: !shot.scene.textures.is_empty() && (outputs.picture || shot.scene.has_masked()),
         masked: shot.scene.has_masked(),
@@ -164,7 +166,7 @@ impl Plan {
             Survey { casters: false, .. } => Outcome::Unshadowed,
             _ => Outcome::Shadowed,
         };
-        let parts = sub_lights(light, shot.settings.split);
+        let parts = technique::parts(light, &shot.settings);
         let faces: Vec<usize> = (0..5).filter(|&face| found.faces[face]).collect();
         let view_first = self.views().count() as u32;
         let mut views = Vec::new();
@@ -205,11 +207,7 @@ impl Plan {
             )));
         }
         self.map = side;
-        if self
-            .lights
-            .iter()
-            .any(|light| light.needs(|recipe| recipe.mssm))
-        {
+        if self.needs(|recipe| recipe.mssm) {
             let wanted = (side - 1).ilog2() + 2;
             let level_bytes = u64::from(side) * u64::from(side) * 8;
             let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
@@ -229,6 +227,25 @@ impl Plan {
         Ok(())
     }
 
+    /// Whether some light's views need something of their recipe.
+    pub fn needs(&self, test: impl Fn(&Recipe) -> bool) -> bool {
+        self.lights.iter().any(|light| light.needs(&test))
+    }
+
+    /// [level] Of the hierarchical shadow map, from 2×2 texels to a single node.
+    pub fn hsm_levels(&self) -> u32 {
+        self.map.next_power_of_two().ilog2()
+    }
+
+    /// [dispatch] In how many rounds a list is worked off at most.
+    pub fn rounds(&self, recipe: &Recipe) -> u32 {
+        // Nodes and edges of a cell, where no cell is passed by and neighbours differ in all that they find.
+        const TURNS_PER_CELL: u64 = 8;
+        let cells = u64::from(self.map) * u64::from(self.map) * u64::from(recipe.layers.max(1));
+        let rounds = (cells * TURNS_PER_CELL).div_ceil(self.loop_turns.into());
+        rounds.clamp(1, ROUNDS_MAX.into()) as u32
+    }
+
     fn list_passes(&mut self, retained: bool) {
         let mut passes = Vec::new();
         let mut add = |name, count| {
@@ -242,7 +259,7 @@ impl Plan {
         add("gbuffer", 1);
         if self.views().next().is_some() {
             add("clear_fits", u32::from(!retained));
-            add("clear_lists", 1);
+            add("clear_lists", u32::from(self.needs(Recipe::has_lists)));
         }
         for light in &self.lights {
             let count = light.views.len() as u32;
@@ -263,6 +280,13 @@ impl Plan {
             passes.extend(["receivers", "casters", "fit", "shadow_map"].map(|name| (name, 1)));
             if light.recipe.mssm {
                 passes.push(("mssm", self.levels));
+            }
+            if light.recipe.hsm {
+                passes.push(("hsm", self.hsm_levels()));
+            }
+            let layers = light.recipe.layers;
+            if layers > 0 {
+                passes.extend([("keep_layer", layers), ("peel", layers - 1)]);
             }
         }
         passes.extend(light.recipe.stages.iter().map(|stage| (stage.name, 1)));

@@ -237,7 +237,9 @@ impl Renderer {
             if !retained {
                 recorder.clear("clear_fits", resources.buffer("fits")?);
             }
-            recorder.clear("clear_lists", resources.buffer("lists")?);
+            if plan.needs(Recipe::has_lists) {
+                recorder.clear("clear_lists", resources.buffer("lists")?);
+            }
         }
         for (index, light) in plan.lights.iter().enumerate() {
             if light.accumulates() {

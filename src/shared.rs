@@ -98,6 +98,10 @@ shared_constants! {
     /// [work group] Lists longer than this many groups wrap into a second dispatch dimension, since
     /// a device may allow no more than 65535 groups in one.
     GROUPS_PER_ROW: uint = 32768;
+    /// [dispatch] Most rounds in which a list is worked off one after the other.
+    ROUNDS_MAX: uint = 32;
+    /// `Progress::next` of an entry that is finished.
+    FINISHED: uint = 0x7fffffff;
     /// [pixel] Side of the work group of passes over the image and of the MSSM's.
     TILE_SIZE: uint = 8;
     /// tan 60°: the front face of a sub-light holds the receivers that lie within it of the axis in
@@ -259,9 +263,9 @@ shared! {
 
     /// Lengths of a view's lists and the dispatches that work them off. All zero at the start of a frame.
     struct Lists {
-        /// VkDispatchIndirectCommand of each list.
-        packet_groups: uvec3,
-        pixel_groups: uvec3,
+        /// VkDispatchIndirectCommand of each list, for each round.
+        packet_groups: uvec3 [ROUNDS_MAX as usize],
+        pixel_groups: uvec3 [ROUNDS_MAX as usize],
         packet_count: uint,
         pixel_count: uint,
     }
@@ -294,6 +298,16 @@ shared! {
         centers: vec4,
     }
 
+    /// Where a list's entry goes on in the next round.
+    struct Progress {
+        /// Number of the next cell of a scan; the node of a walk, x | y << 16; or `FINISHED`.
+        next: uint,
+        /// Of a walk: its root, x | y << 16, its level and its stack.
+        root: uint,
+        level: uint,
+        stack: uint,
+    }
+
     /// `--counters`, summed over all views.
     struct Counters {
         pixels: uint,
@@ -306,13 +320,15 @@ shared! {
         /// 64-bit counts: low word, high word.
         nodes_visited: uvec2,
         edges_extracted: uvec2,
+        /// Depths and depth bounds that visibility passes read.
+        samples_read: uvec2,
     }
 
     /// What a pass is told when it is recorded.
     struct Push {
         /// Index of the view, or of the light for passes that run per light.
         index: uint,
-        /// MSSM level to build.
+        /// MSSM level to build, layer to draw, or round in which a list is worked off.
         level: uint,
     }
 

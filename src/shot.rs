@@ -38,8 +38,40 @@ pub enum Technique {
     PacketContour,
     /// [GBP07] as re-implemented in [Yang09]: every cell of the kernel, pixel by pixel.
     PixelContour,
-    /// [Williams78]: one nearest-sample test per view.
+    /// [GBP06]: the back-projected areas of all texels of the kernel.
+    Micropatch,
+    /// [DU07]: the same, found in a min-max pyramid.
+    MicropatchHierarchical,
+    /// [SS07]: bits of light samples covered by microquads.
+    Bitmask,
+    /// [BCS08]: several peeled layers of the shadow map.
+    DepthPeeling,
+    /// [Fernando05]: blocker search and percentage-closer filter.
+    Pcss,
+    /// [Williams78]: nearest sample, or 3×3 of them.
     Hard,
+    /// The mean of many hard shadow maps.
+    ReferenceMaps,
+}
+
+/// Where the samples of a bitmask stand in the light's strata.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pattern {
+    /// In their middles.
+    Regular,
+    /// Anywhere, the same for all pixels.
+    Jittered,
+}
+
+/// What the texels of a peeled layer stand for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Occluders {
+    /// A rectangle each.
+    Micropatches,
+    /// The area inside their contour.
+    Contours,
 }
 
 /// The knobs of a technique.
@@ -58,6 +90,23 @@ pub struct Settings {
     pub footprint_pruning: bool,
     /// `PixelContour` only: walk the MSSM instead of every cell.
     pub hierarchical: bool,
+    /// `Micropatch…` only: patches reach out to where their left and bottom neighbours end.
+    pub gap_filling: bool,
+    /// [layer] [1, 4] `Bitmask` and `DepthPeeling` only: peeled layers of the shadow map.
+    pub layers: u32,
+    /// `DepthPeeling` only.
+    pub occluders: Occluders,
+    /// [8, 16] `Bitmask` only: the light has light_samples × light_samples samples.
+    pub light_samples: u32,
+    /// `Bitmask` only.
+    pub pattern: Pattern,
+    /// [sample] [1, 1024] `Pcss` only: of the blocker search and of the filter.
+    pub blocker_samples: u32,
+    pub filter_samples: u32,
+    /// `Hard` only: the share of 3×3 samples instead of the nearest one.
+    pub percentage_closer: bool,
+    /// [map] [1, 4096] `ReferenceMaps` only.
+    pub maps: u32,
     /// [texel] Bias along the receiver's plane, in texels of its slope.
     pub bias: f32,
     /// Count pixels, packets, nodes and edges (costs time).
@@ -93,6 +142,15 @@ impl Default for Settings {
             map: 512,
             footprint_pruning: true,
             hierarchical: false,
+            gap_filling: true,
+            layers: 1,
+            occluders: Occluders::Micropatches,
+            light_samples: 16,
+            pattern: Pattern::Jittered,
+            blocker_samples: 16,
+            filter_samples: 32,
+            percentage_closer: false,
+            maps: 1024,
             bias: 1.5,
             counters: false,
         }
@@ -100,6 +158,25 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The settings that a technique is known by: rivals have a single view, as in their publications.
+    pub fn usual(technique: Technique) -> Self {
+        let usual = Self::default();
+        Self {
+            technique,
+            split: if technique == Technique::PacketContour {
+                usual.split
+            } else {
+                1
+            },
+            layers: if technique == Technique::DepthPeeling {
+                4
+            } else {
+                1
+            },
+            ..usual
+        }
+    }
+
     /// # Errors
     /// [`Error::Invalid`] when a setting is out of its range.
     pub fn validate(&self) -> Result<()> {
@@ -117,6 +194,30 @@ impl Settings {
             (16..=8192).contains(&self.map),
             format!("a shadow map is 16 to 8192 texels wide, not {}", self.map),
         )?;
+        for (what, value, range) in [
+            ("layers of a shadow map", self.layers, 1..=4),
+            (
+                "samples along a side of the light",
+                self.light_samples,
+                8..=16,
+            ),
+            (
+                "samples of the blocker search",
+                self.blocker_samples,
+                1..=1024,
+            ),
+            ("samples of the filter", self.filter_samples, 1..=1024),
+            ("reference maps", self.maps, 1..=4096),
+        ] {
+            check(
+                range.contains(&value),
+                format!(
+                    "the number of {what} is {} to {}, not {value}",
+                    range.start(),
+                    range.end()
+                ),
+            )?;
+        }
         check(
             self.bias.is_finite() && self.bias >= 0.0,
             format!(

@@ -23,9 +23,11 @@ pub struct SubLight {
 /// The light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
 /// A light without extent has one part without extent.
 pub fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {
+    if light.is_point() {
+        return vec![SubLight::point(light.center)];
+    }
     let (u, v, _) = light.frame();
     let (half_u, half_v) = light.half_size();
-    let split = if light.is_point() { 1 } else { split };
     let half_size = DVec2::new(half_u, half_v) / f64::from(split);
     let cells = (0..split).flat_map(|row| (0..split).map(move |column| (column, row)));
     cells
@@ -80,6 +82,17 @@ fn cut_by_disc(cell: DVec2, radius: f64) -> Option<(DVec2, Option<(DVec2, f64)>)
 }
 
 impl SubLight {
+    /// A part without extent: a point in the middle of half sizes that can be divided by.
+    pub fn point(center: DVec3) -> Self {
+        Self {
+            center,
+            half_size: DVec2::ONE,
+            extent: (DVec2::ZERO, DVec2::ZERO),
+            rim: None,
+            area: 4.0,
+        }
+    }
+
     /// [half sizes²] Area swept from direction 0 up to each of `SECTOR_STEPS` + 1 equally spaced perimeter
     /// parameters, 0 to 8.
     pub fn sectors(&self) -> Vec<f32> {

@@ -1,12 +1,20 @@
 //! Techniques: what each publication runs in every view, between the shared front (g-buffer, shadow map,
-//! MSSM) and the shared back (resolve, shade). A technique is data, a list of stages: the plan counts them,
-//! the renderer records them. All add to one image of occlusion that `resolve` cannot tell apart.
+//! acceleration structures) and the shared back (resolve, shade). A technique is data, a list of stages: the plan
+//! counts them, the renderer records them. All add to one image of occlusion that `resolve` cannot tell apart.
 
+mod bitmask;
+mod depth_peeling;
 mod hard;
+mod micropatch;
+mod micropatch_hierarchical;
 mod packet_contour;
+mod pcss;
 mod pixel_contour;
+mod reference_maps;
 
+use crate::scene::AreaLight;
 use crate::shot::{Settings, Technique};
+use crate::sub_light::{SubLight, sub_lights};
 
 /// One dispatch in every view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,10 +42,16 @@ pub enum Work {
 }
 
 /// A technique with its settings, as what there is to run.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Recipe {
-    /// Whether the stages read the MSSM.
+    /// Whether the stages read the MSSM: all that have kernels do.
     pub mssm: bool,
+    /// Whether they read the hierarchical shadow map.
+    pub hsm: bool,
+    /// [layer] Of the shadow map that are peeled off and kept; 0 = the map itself is read.
+    pub layers: u32,
+    /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.
+    pub words: u32,
     pub stages: Vec<Stage>,
 }
 
@@ -48,12 +62,46 @@ impl Recipe {
             _ if point => hard::recipe(),
             Technique::PacketContour => packet_contour::recipe(settings),
             Technique::PixelContour => pixel_contour::recipe(settings),
+            Technique::Micropatch => micropatch::recipe(),
+            Technique::MicropatchHierarchical => micropatch_hierarchical::recipe(),
+            Technique::Bitmask => bitmask::recipe(settings),
+            Technique::DepthPeeling => depth_peeling::recipe(settings),
+            Technique::Pcss => pcss::recipe(),
             Technique::Hard => hard::recipe(),
+            Technique::ReferenceMaps => reference_maps::recipe(),
         }
+    }
+
+    /// A kernel for each penumbra pixel, and `stage` over the list of them.
+    fn over_pixels(name: &'static str, shader: &'static str) -> Self {
+        let stage = Stage {
+            name,
+            shader,
+            work: Work::PixelList,
+        };
+        Self {
+            mssm: true,
+            words: 1,
+            stages: vec![KERNELS, CLASSIFY, stage],
+            ..Self::default()
+        }
+    }
+
+    /// Whether it works off lists of packets or pixels.
+    pub fn has_lists(&self) -> bool {
+        self.has(Work::PacketList) || self.has(Work::PixelList)
     }
 
     pub fn has(&self, work: Work) -> bool {
         self.stages.iter().any(|stage| stage.work == work)
+    }
+}
+
+/// The parts of a light that have views of their own.
+pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<SubLight> {
+    match settings.technique {
+        Technique::ReferenceMaps if !light.is_point() => reference_maps::parts(light, settings),
+        _ => sub_lights(light, settings.split),
     }
 }
 

@@ -15,7 +15,7 @@ use closed_form::{HalfPlane, Occluder, disc_visibility, rectangle_visibility};
 use glam::{DVec2, DVec3};
 use halfshade::gpu::Gpu;
 use halfshade::scene::AreaLight;
-use halfshade::shot::Settings;
+use halfshade::shot::{Pattern, Settings, Technique};
 use support::{Image, Triangles, camera, disc_light, rectangle_light, render, shot, with_gpu};
 
 const LIGHT: DVec3 = DVec3::new(0.1, 3.0, -0.05);
@@ -60,6 +60,17 @@ impl Case {
     }
 
     fn measure(&self, gpu: &Arc<Gpu>, map: u32, split: u32) -> Measured {
+        self.measure_with(
+            gpu,
+            Settings {
+                map,
+                split,
+                ..Settings::default()
+            },
+        )
+    }
+
+    fn measure_with(&self, gpu: &Arc<Gpu>, settings: Settings) -> Measured {
         let corners = match self.occluder.sides[..] {
             [side] => side.corners(6.0).to_vec(),
             _ => self.occluder.corners(),
@@ -70,11 +81,6 @@ impl Case {
             .build();
         let eye = DVec3::new(-3.5, 1.4, 0.4);
         let camera = camera(eye, DVec3::new(0.0, 0.0, 0.1), 42.0);
-        let settings = Settings {
-            map,
-            split,
-            ..Settings::default()
-        };
         let image = render(gpu, &shot(scene, camera, self.light.clone(), 96, settings));
         self.judge(&image)
     }
@@ -218,6 +224,103 @@ fn the_error_shrinks_with_the_texel() {
             assert!(
                 errors.is_sorted_by(|coarse, fine| coarse > fine),
                 "{errors:?}"
+            );
+        }
+    });
+}
+
+/// An occluder parallel to the light is what micropatches are made for: each texel of it is exact, and the whole is too
+/// large by less than a texel on each side.
+#[test]
+fn square_by_micropatches() {
+    with_gpu(|gpu| {
+        for technique in [Technique::Micropatch, Technique::MicropatchHierarchical] {
+            for (gap_filling, light) in [(true, 0), (false, 0), (true, 1)] {
+                let settings = Settings {
+                    gap_filling,
+                    map: 256,
+                    ..Settings::usual(technique)
+                };
+                // Some thousand patches are summed, where a contour has some hundred edges.
+                let mut case = match light {
+                    0 => Case::rectangle(square(30.0)),
+                    _ => Case::disc(square(30.0)),
+                };
+                case.rounding = case.rounding.max(1e-4);
+                let measured = case.measure_with(gpu, settings);
+                println!("{technique}: {} texels", measured.texels);
+                assert!(measured.texels <= TEXELS_MAX, "{} texels", measured.texels);
+            }
+        }
+    });
+}
+
+/// The share of covered samples may be off by those of a stratum's row along each edge that crosses the light.
+#[test]
+fn square_by_bitmasks() {
+    with_gpu(|gpu| {
+        for (light_samples, pattern) in [
+            (8, Pattern::Regular),
+            (16, Pattern::Regular),
+            (16, Pattern::Jittered),
+        ] {
+            let settings = Settings {
+                light_samples,
+                pattern,
+                map: 256,
+                ..Settings::usual(Technique::Bitmask)
+            };
+            let mut case = Case::rectangle(square(30.0));
+            case.rounding = 1.0 / f64::from(light_samples);
+            let measured = case.measure_with(gpu, settings);
+            println!("{light_samples}: {} texels", measured.texels);
+            assert!(measured.texels <= TEXELS_MAX, "{} texels", measured.texels);
+        }
+    });
+}
+
+/// The filter of an occluder parallel to the light is a box that the mean blocker depth makes just right: what is left
+/// is the error of 1024 samples, a few times 1/√1024 at the worst of thousands of pixels.
+#[test]
+fn half_plane_by_percentage_closer_soft_shadows() {
+    with_gpu(|gpu| {
+        let settings = Settings {
+            map: 256,
+            blocker_samples: 1024,
+            filter_samples: 1024,
+            ..Settings::usual(Technique::Pcss)
+        };
+        let mut case = Case::rectangle(half_plane(20.0));
+        case.rounding = 2.0 / 32.0;
+        let measured = case.measure_with(gpu, settings);
+        println!("{} texels", measured.texels);
+        assert!(measured.texels <= TEXELS_MAX, "{} texels", measured.texels);
+    });
+}
+
+/// The mean of hard shadows converges to the exact one: the error of n points that fill the light evenly is about the
+/// perimeter of an edge's strata, n^(-1/2) · 1/2 at the most.
+#[test]
+fn square_by_reference_maps() {
+    with_gpu(|gpu| {
+        for maps in [16, 256] {
+            let settings = Settings {
+                maps,
+                map: 256,
+                ..Settings::usual(Technique::ReferenceMaps)
+            };
+            let mut case = Case::rectangle(square(30.0));
+            case.rounding = 2.0 / f64::from(maps).sqrt();
+            let measured = case.measure_with(gpu, settings);
+            println!(
+                "{maps} maps: {} texels, rms {:.2e}",
+                measured.texels, measured.rms
+            );
+            assert!(measured.texels <= TEXELS_MAX, "{} texels", measured.texels);
+            assert!(
+                measured.rms <= 0.5 / f64::from(maps).sqrt(),
+                "rms {}",
+                measured.rms
             );
         }
     });

@@ -16,6 +16,7 @@ const LIMITS: Limits = Limits {
     image_bytes: 1 << 31,
     buffer_bytes: 1 << 27,
     memory_bytes: 1 << 33,
+    loop_turns: 60000,
 };
 
 const EVERYTHING: Outputs = Outputs { picture: true };

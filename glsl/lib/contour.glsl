@@ -28,22 +28,34 @@ float start_depth(vec4 depths, uint edge) { return depths[edge]; }
 
 float end_depth(vec4 depths, uint edge) { return depths[(edge + 1u) & 3u]; }
 
-// On which side of a segment the point `at` of the cell lies: +1 left (the occluder's), −1 right.
-// Every product is exact, so the sign is that of the difference of two floats: the centre test and the
-// integration ask the same question and get the same answer (traps 1 and 2).
-float side_of(uint from, uint to, vec2 at) {
-    precise vec2 start = midpoint(from);
-    precise vec2 way = midpoint(to) - start;
-    precise vec2 offset = at - start;
+// A contour segment in texels, with the depth of its occluders: x, y, d of its start and of its end.
+struct Edge {
+    vec3 a;
+    vec3 b;
+};
+
+Edge edge_of(ivec2 cell, vec4 depths, uint mask, uint segment) {
+    uint from = start_edge(mask, segment);
+    uint to = end_edge(mask, segment);
+    return Edge(vec3(vec2(cell) + midpoint(from), start_depth(depths, from)),
+                vec3(vec2(cell) + midpoint(to), end_depth(depths, to)));
+}
+
+// On which side of an edge the point `t` lies: +1 left (the occluder's), −1 right.
+// For a point in the edge's cell every difference and product is exact, so the sign is that of the difference
+// of two floats: the centre test and the integration ask the same question and get the same answer (traps 1, 2).
+float side_of(Edge edge, vec2 t) {
+    precise vec2 way = edge.b.xy - edge.a.xy;
+    precise vec2 offset = t - edge.a.xy;
     precise float left = way.x * offset.y;
     precise float right = way.y * offset.x;
     return left > right ? 1.0 : -1.0;
 }
 
-// Whether the point `at` of a cell lies inside the contour.
-bool inside_contour(uint mask, vec2 at) {
+// Whether the point `t` of a cell lies inside the contour.
+bool inside_contour(ivec2 cell, vec4 depths, uint mask, vec2 t) {
     bool inside = mask == 15u;
     for (uint i = 0u; i < segment_count(mask); ++i)
-        inside = inside || side_of(start_edge(mask, i), end_edge(mask, i), at) > 0.0;
+        inside = inside || side_of(edge_of(cell, depths, mask, i), t) > 0.0;
     return inside;
 }

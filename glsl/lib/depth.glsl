@@ -93,6 +93,17 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
 // Where the line from the receiver through the occluder point (t_p + dt, d) meets the light plane, as
 // (x, y, w) with q = (x, y) / w in half sizes; w > 0 for points between receiver and light.
 vec3 back_project(Receiver receiver, vec2 dt, float d) {
-    if (OBLIQUE) return vec3(dot(receiver.ku, dt), dot(receiver.kv, dt), d - receiver.d + dot(receiver.b, dt));
-    return vec3(receiver.ku.x * dt.x, receiver.kv.y * dt.y, d - receiver.d);
+    vec3 oblique = vec3(dot(receiver.ku, dt), dot(receiver.kv, dt), d - receiver.d + dot(receiver.b, dt));
+    return OBLIQUE ? oblique : vec3(receiver.ku.x * dt.x, receiver.kv.y * dt.y, d - receiver.d);
+}
+
+// [texel] Where, seen from t_p, an occluder of depth `d` stands that hides the light's point q: the inverse of
+// `back_project`. Its third component is 0 where no such place is on the map's side of its horizon.
+vec3 texel_offset(Receiver receiver, vec2 q, float d) {
+    float near_side = d - receiver.d;
+    if (!OBLIQUE) return vec3(near_side * q / vec2(receiver.ku.x, receiver.kv.y), 1.0);
+    precise float determinant = receiver.ku.x * receiver.kv.y - receiver.ku.y * receiver.kv.x;
+    precise vec2 at = vec2(q.x * receiver.kv.y - q.y * receiver.ku.y, q.y * receiver.ku.x - q.x * receiver.kv.x) / determinant;
+    precise float share = 1.0 - (receiver.b.x * at.x + receiver.b.y * at.y);
+    return share > 1e-4 ? vec3(at * (near_side / share), 1.0) : vec3(at, 0.0);
 }

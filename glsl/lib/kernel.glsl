@@ -19,13 +19,11 @@ Cells kernel_cells(View view, Receiver receiver, float depth_max) {
     if (OBLIQUE) {
         lower = vec2(0.0);
         upper = vec2(0.0);
-        precise float determinant = receiver.ku.x * receiver.kv.y - receiver.ku.y * receiver.kv.x;
         for (int i = 0; i < 4; ++i) {
             vec2 q = vec2((i & 1) == 0 ? view.extent.x : view.extent.z, (i & 2) == 0 ? view.extent.y : view.extent.w);
-            precise vec2 at = vec2(q.x * receiver.kv.y - q.y * receiver.ku.y, q.y * receiver.ku.x - q.x * receiver.kv.x) / determinant;
-            precise float share = 1.0 - (receiver.b.x * at.x + receiver.b.y * at.y);
+            vec3 offset = texel_offset(receiver, q, depth_max);
             // The light's corner lies beyond the map's horizon: the kernel has no bound there.
-            vec2 dt = share > 1e-4 ? at * (near_side / share) : sign(at) * float(2u * view.map_size);
+            vec2 dt = offset.z > 0.0 ? offset.xy : sign(offset.xy) * float(2u * view.map_size);
             lower = min(lower, dt);
             upper = max(upper, dt);
         }

@@ -3,15 +3,14 @@
 // Where the direction `q` leaves the square [−1, 1]², counted along its border: 0 at +x, 2 at +y, 4 at
 // −x, 6 at −y; [−1, 7]. Opposite directions are exactly 4 apart.
 float perimeter(vec2 q) {
-    vec2 size = abs(q);
-    if (size.x >= size.y) return (q.x > 0.0 ? 0.0 : 4.0) + q.y / q.x;
-    return (q.y > 0.0 ? 2.0 : 6.0) - q.x / q.y;
+    bool wide = abs(q.x) >= abs(q.y);
+    float ratio = (wide ? q.y : q.x) / (wide ? q.x : q.y);
+    return wide ? (q.x > 0.0 ? 0.0 : 4.0) + ratio : (q.y > 0.0 ? 2.0 : 6.0) - ratio;
 }
 
 // How often the way from perimeter parameter a to b, seen from the centre under less than 180°, must be
-// corrected by a full turn (8). side: +1 or −1 where it is known on which side of the segment the
-// centre lies (left, right), 0 where the segment can't come close to the centre. Without it the
-// rounding of a direction could turn a half-turn over (trap 2).
+// corrected by a full turn (8). side: +1 or −1, on which side of the segment the centre lies (left, right).
+// Without it the rounding of a direction could turn a half-turn over (trap 2).
 float turns(float a, float b, float side) {
     float way = b - a;
     float turn = way > 4.0 ? -1.0 : way < -4.0 ? 1.0 : 0.0;

@@ -9,7 +9,8 @@ float sector_to(View view, float parameter) {
 }
 
 // Signed area of the part of the sub-light that lies beyond the segment a→b, seen from the centre,
-// within the segment's angle. a, b: homogeneous light coordinates. side: see `turns`.
+// within the segment's angle. a, b: homogeneous light coordinates. side: on which side of the segment the
+// centre lies, see `turns`.
 // A segment outside the light contributes exactly 0.
 float area_beyond(View view, vec3 a, vec3 b, float side) {
     bool inside = clip_to_box(ROUND ? view.extent : vec4(-1.0, -1.0, 1.0, 1.0), a, b);
@@ -29,15 +30,16 @@ float area_beyond(View view, vec3 a, vec3 b, float side) {
     return inside ? beyond : 0.0;
 }
 
-// `area_beyond` of one segment of a cell, for one receiver; 0 where the cell has fewer.
+// `area_beyond` of a contour's edge, for one receiver.
+float edge_beyond(View view, Receiver receiver, Edge edge) {
+    vec3 a = back_project(receiver, edge.a.xy - receiver.t, edge.a.z);
+    vec3 b = back_project(receiver, edge.b.xy - receiver.t, edge.b.z);
+    return area_beyond(view, a, b, side_of(edge, receiver.t));
+}
+
+// `edge_beyond` of one segment of a cell; 0 where the cell has fewer.
 float segment_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint mask, uint segment) {
-    uint from = start_edge(mask, segment);
-    uint to = end_edge(mask, segment);
-    vec2 corner = vec2(cell);
-    vec3 a = back_project(receiver, corner + midpoint(from) - receiver.t, start_depth(depths, from));
-    vec3 b = back_project(receiver, corner + midpoint(to) - receiver.t, end_depth(depths, to));
-    bool own = cell == ivec2(floor(receiver.t));
-    float beyond = area_beyond(view, a, b, own ? side_of(from, to, receiver.t - corner) : 0.0);
+    float beyond = edge_beyond(view, receiver, edge_of(cell, depths, mask, segment));
     return segment < segment_count(mask) ? beyond : 0.0;
 }
 
@@ -53,8 +55,8 @@ float occluded_share(View view, Receiver receiver, texture2D shadow_map, float b
     ivec2 cell = ivec2(floor(receiver.t));
     bool inside = false;
     if (all(lessThan(uvec2(cell), uvec2(view.map_size - 1u)))) {
-        uint mask = mask_of(samples_of(shadow_map, cell), receiver.biased);
-        inside = inside_contour(mask, receiver.t - vec2(cell));
+        vec4 depths = samples_of(shadow_map, cell);
+        inside = inside_contour(cell, depths, mask_of(depths, receiver.biased), receiver.t);
     }
     return clamp(((inside ? view.area : 0.0) - beyond) / view.area, 0.0, 1.0);
 }

@@ -1,8 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Hard shadows: the nearest sample decides [Williams78].
+// Hard shadows: the nearest sample decides, or the mean of the tests of its neighbourhood [Williams78; percentage
+// closer filtering by Reeves, Salesin and Cook 1987].
 #include "pass.glsl"
 #include "depth.glsl"
+#include "count.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -13,26 +15,16 @@ layout(binding = 3) uniform texture2D position_world;
 layout(binding = 4) uniform texture2D normal_world;
 layout(binding = 5) uniform texture2D shadow_map;
 layout(binding = 6, scalar) buffer Occlusion { float occlusion[]; };
+layout(binding = 7, scalar) buffer CountersBlock { Counters counters; };
+#include "filtered.glsl"
 
-bool is_hidden(View view, Fit fit, vec3 to_point, vec3 normal) {
-    if (fit.level_count == 0u) return false;
-    Receiver receiver = project(view, fit, to_point, normal);
-    ivec2 texel = ivec2(floor(clamp(receiver.t, vec2(-2.0), vec2(view.map_size + 1u)) + 0.5));
-    if (any(greaterThanEqual(uvec2(texel), uvec2(view.map_size)))) return false;
-    return texelFetch(shadow_map, texel, 0).x > receiver.biased;
+float occluded_of(View view, Fit fit, uvec2 pixel, Receiver receiver) {
+    float hidden = 0.0;
+    for (int y = -FILTER_REACH; y <= FILTER_REACH; ++y)
+        for (int x = -FILTER_REACH; x <= FILTER_REACH; ++x)
+            hidden += float(nearest_depth(view, receiver.t + vec2(x, y)) > receiver.biased);
+    float side = float(2 * FILTER_REACH + 1);
+    return hidden / (side * side);
 }
 
-void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = pixel.y * frame.size.x + pixel.x;
-    View view = views[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    vec3 to_point = position.xyz - view.center;
-    bool hidden = position.w > 0.0 && in_view(view, to_point, normal)
-               && is_hidden(view, fits[push.index], to_point, normal);
-    float occluded = hidden ? view.weight : 0.0;
-    if (!ACCUMULATE) occlusion[index] = occluded;
-    else if (hidden) occlusion[index] += occluded;
-}
+void main() { filter_pixel(uint((2 * FILTER_REACH + 1) * (2 * FILTER_REACH + 1))); }

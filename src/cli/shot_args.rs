@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use halfshade::gpu::{Gpu, Options};
-use halfshade::shot::{Leaf, Mapping, Overrides, Settings, Shot, Technique};
+use halfshade::shot::{Leaf, Mapping, Occluders, Overrides, Pattern, Settings, Shot, Technique};
 use halfshade::{Error, Result};
 
 use super::calibration::Calibration;
@@ -15,7 +15,8 @@ use super::{parse_size, print_notes, progress};
 pub struct ShotArgs {
     /// A shot file (.json), or a .gltf or .glb with a camera and a light
     pub shot: PathBuf,
-    /// Which publication computes the visibility: packet-contour, pixel-contour or hard
+    /// Which publication computes the visibility: packet-contour, pixel-contour, micropatch,
+    /// micropatch-hierarchical, bitmask, depth-peeling, pcss, hard or reference-maps
     #[arg(long, value_name = "NAME", default_value_t = Technique::PacketContour)]
     technique: Technique,
     /// Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path [default: calibrated, else 4x4]
@@ -28,8 +29,9 @@ pub struct ShotArgs {
     #[arg(long, value_name = "MAPPING")]
     mapping: Option<Mapping>,
     /// Cut each light into N×N sub-lights, 1 to 16; 1 is fastest and leaks where occluders overlap
-    #[arg(long, value_name = "N", default_value_t = 4)]
-    split: u32,
+    /// [default: 4 with packet-contour, else 1]
+    #[arg(long, value_name = "N")]
+    split: Option<u32>,
     /// Width and height of a shadow map in texels, 16 to 8192
     #[arg(long, value_name = "R", default_value_t = 512)]
     map: u32,
@@ -42,6 +44,33 @@ pub struct ShotArgs {
     /// With pixel-contour: walk the MSSM instead of every cell of the kernel
     #[arg(long)]
     hierarchical: bool,
+    /// With micropatch and micropatch-hierarchical: leave the gaps between patches open
+    #[arg(long)]
+    no_gap_filling: bool,
+    /// With bitmask and depth-peeling: layers of the shadow map, 1 to 4 [default: 4 with depth-peeling, else 1]
+    #[arg(long, value_name = "N")]
+    layers: Option<u32>,
+    /// With depth-peeling: what a layer's texels stand for, micropatches or contours
+    #[arg(long, value_name = "KIND", default_value_t = Occluders::Micropatches)]
+    occluders: Occluders,
+    /// With bitmask: N×N samples of the light, 8 to 16
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    light_samples: u32,
+    /// With bitmask: where the light's samples stand, regular or jittered
+    #[arg(long, value_name = "NAME", default_value_t = Pattern::Jittered)]
+    pattern: Pattern,
+    /// With pcss: samples of the search for blockers, 1 to 1024
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    blocker_samples: u32,
+    /// With pcss: samples of the filter, 1 to 1024
+    #[arg(long, value_name = "N", default_value_t = 32)]
+    filter_samples: u32,
+    /// With hard: the share of 3×3 samples that hide the pixel, instead of the nearest one
+    #[arg(long)]
+    percentage_closer: bool,
+    /// With reference-maps: hard shadow maps from points on the light, 1 to 4096
+    #[arg(long, value_name = "N", default_value_t = 1024)]
+    maps: u32,
     /// Count pixels, packets, nodes and edges (takes time)
     #[arg(long)]
     pub counters: bool,
@@ -78,15 +107,25 @@ impl ShotArgs {
     }
 
     fn settings(&self, calibration: &Calibration) -> Settings {
+        let usual = Settings::usual(self.technique);
         Settings {
             technique: self.technique,
             packet: self.packet.unwrap_or(calibration.packet),
             leaf: self.leaf.unwrap_or(calibration.leaf),
             mapping: self.mapping.unwrap_or(calibration.mapping),
-            split: self.split,
+            split: self.split.unwrap_or(usual.split),
             map: self.map,
             footprint_pruning: !self.no_footprint_pruning,
             hierarchical: self.hierarchical,
+            gap_filling: !self.no_gap_filling,
+            layers: self.layers.unwrap_or(usual.layers),
+            occluders: self.occluders,
+            light_samples: self.light_samples,
+            pattern: self.pattern,
+            blocker_samples: self.blocker_samples,
+            filter_samples: self.filter_samples,
+            percentage_closer: self.percentage_closer,
+            maps: self.maps,
             bias: self.bias,
             counters: self.counters,
         }

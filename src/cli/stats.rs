@@ -195,5 +195,9 @@ fn counts(after: &Counters, before: &Counters) -> BTreeMap<&'static str, u64> {
             "edges_extracted",
             wide(after.edges_extracted).wrapping_sub(wide(before.edges_extracted)),
         ),
+        (
+            "samples_read",
+            wide(after.samples_read).wrapping_sub(wide(before.samples_read)),
+        ),
     ])
 }

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
+use super::physical::{DeviceInfo, pick};
 use super::requirements::{self, Features, Limits};
 use super::validation::{self, Messages};
 use crate::error::{Error, Result};
@@ -23,24 +24,6 @@ pub struct Options {
     pub validate: bool,
     /// Folder for the pipeline cache, which is read at opening and written at closing.
     pub cache_folder: Option<PathBuf>,
-}
-
-/// A Vulkan device and whether it can run the engine.
-#[derive(Debug, Clone, serde::Serialize)]
-pub struct DeviceInfo {
-    pub name: String,
-    /// "discrete", "integrated", "virtual", "cpu" or "other".
-    pub kind: &'static str,
-    /// Name and version of the driver.
-    pub driver: String,
-    /// Version of Vulkan.
-    pub vulkan: String,
-    /// [invocation]
-    pub subgroup_size: u32,
-    /// The device's UUID in hexadecimal digits: names what is stored per device.
-    pub uuid: String,
-    /// What it lacks; empty = it can run the engine.
-    pub missing: Vec<String>,
 }
 
 /// An open device. Everything that lives on it keeps it open.
@@ -72,7 +55,7 @@ pub(super) fn failed(call: &str) -> impl FnOnce(vk::Result) -> Error + '_ {
     }
 }
 
-fn load() -> Result<ash::Entry> {
+pub(super) fn load() -> Result<ash::Entry> {
     // SAFETY: loading the system's Vulkan loader; it stays loaded while the entry lives.
     unsafe { ash::Entry::load() }.map_err(|e| {
         Error::Unsupported(format!(
@@ -82,7 +65,7 @@ fn load() -> Result<ash::Entry> {
 }
 
 /// An instance, with the messenger's own creation and destruction validated too.
-fn create_instance(
+pub(super) fn create_instance(
     entry: &ash::Entry,
     validate: bool,
     messages: &Messages,
@@ -139,115 +122,6 @@ fn create_instance(
     let instance =
         unsafe { entry.create_instance(&info, None) }.map_err(failed("vkCreateInstance"))?;
     Ok((instance, debug))
-}
-
-fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo {
-    let mut driver = vk::PhysicalDeviceDriverProperties::default();
-    let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default()
-        .push_next(&mut driver)
-        .push_next(&mut v11);
-    // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
-    unsafe { instance.get_physical_device_properties2(device, &mut properties) };
-    let core = properties.properties;
-    let text = |name: Result<&CStr, _>| {
-        name.map(|n| n.to_string_lossy().into_owned())
-            .unwrap_or_default()
-    };
-    DeviceInfo {
-        name: text(core.device_name_as_c_str()),
-        kind: match core.device_type {
-            vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
-            vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
-            vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
-            vk::PhysicalDeviceType::CPU => "cpu",
-            _ => "other",
-        },
-        driver: format!(
-            "{} {}",
-            text(driver.driver_name_as_c_str()),
-            text(driver.driver_info_as_c_str())
-        ),
-        vulkan: format!(
-            "{}.{}.{}",
-            vk::api_version_major(core.api_version),
-            vk::api_version_minor(core.api_version),
-            vk::api_version_patch(core.api_version)
-        ),
-        subgroup_size: v11.subgroup_size,
-        uuid: v11
-            .device_uuid
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect(),
-        missing: requirements::missing(instance, device),
-    }
-}
-
-/// Every Vulkan device of the system, able to run the engine or not.
-pub fn list_devices() -> Result<Vec<DeviceInfo>> {
-    let entry = load()?;
-    let (instance, _) = create_instance(&entry, false, &Messages::default())?;
-    // SAFETY: the instance is destroyed after its last use.
-    unsafe {
-        let devices = instance
-            .enumerate_physical_devices()
-            .map_err(failed("vkEnumeratePhysicalDevices"));
-        let list = devices.map(|devices| devices.iter().map(|&d| describe(&instance, d)).collect());
-        instance.destroy_instance(None);
-        list
-    }
-}
-
-/// The device that `wanted` names, or else the best one.
-fn pick(
-    instance: &ash::Instance,
-    wanted: Option<&str>,
-) -> Result<(vk::PhysicalDevice, DeviceInfo)> {
-    // SAFETY: a plain query.
-    let devices = unsafe { instance.enumerate_physical_devices() }
-        .map_err(failed("vkEnumeratePhysicalDevices"))?;
-    let mut found: Vec<_> = devices
-        .into_iter()
-        .map(|device| (device, describe(instance, device)))
-        .collect();
-    if found.is_empty() {
-        return Err(Error::Unsupported(
-            "no Vulkan device: install a driver (mesa-vulkan-drivers has lavapipe)".into(),
-        ));
-    }
-    let names = |list: &[(vk::PhysicalDevice, DeviceInfo)]| {
-        list.iter()
-            .map(|(_, info)| info.name.clone())
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    if let Some(wanted) = wanted {
-        let all = names(&found);
-        found.retain(|(_, info)| info.name.to_lowercase().contains(&wanted.to_lowercase()));
-        if found.is_empty() {
-            return Err(Error::Unsupported(format!(
-                "no Vulkan device is called \"{wanted}\"; there are: {all}"
-            )));
-        }
-    }
-    let rank = |info: &DeviceInfo| {
-        let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
-        (
-            !info.missing.is_empty(),
-            kinds.iter().position(|&kind| kind == info.kind),
-        )
-    };
-    found.sort_by_key(|(_, info)| rank(info));
-    let (device, info) = found.swap_remove(0);
-    if info.missing.is_empty() {
-        return Ok((device, info));
-    }
-    Err(Error::Unsupported(format!(
-        "{} cannot run the engine: it lacks {}",
-        info.name,
-        info.missing.join(", ")
-    )))
 }
 
 impl Gpu {

@@ -30,14 +30,16 @@ pub enum ImageKind {
     Vector,
     /// RGBA8, drawn to and sampled.
     Color,
-    /// RG32F, written by compute passes and sampled.
+    /// D32_SFLOAT, an array that depth is copied to, sampled.
+    Layers,
+    /// RG32F, an array written by compute passes and sampled.
     Bounds,
 }
 
 impl ImageKind {
     pub fn format(self) -> vk::Format {
         match self {
-            Self::Depth => vk::Format::D32_SFLOAT,
+            Self::Depth | Self::Layers => vk::Format::D32_SFLOAT,
             Self::Vector => vk::Format::R32G32B32A32_SFLOAT,
             Self::Color => vk::Format::R8G8B8A8_UNORM,
             Self::Bounds => vk::Format::R32G32_SFLOAT,
@@ -47,7 +49,7 @@ impl ImageKind {
     /// [byte]
     pub fn texel_bytes(self) -> u64 {
         match self {
-            Self::Depth | Self::Color => 4,
+            Self::Depth | Self::Layers | Self::Color => 4,
             Self::Bounds => 8,
             Self::Vector => 16,
         }
@@ -57,6 +59,7 @@ impl ImageKind {
         let own = match self {
             Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::Vector | Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+            Self::Layers => vk::ImageUsageFlags::empty(),
             Self::Bounds => vk::ImageUsageFlags::STORAGE,
         };
         own | vk::ImageUsageFlags::SAMPLED
@@ -65,7 +68,7 @@ impl ImageKind {
     }
 
     pub(super) fn aspect(self) -> vk::ImageAspectFlags {
-        if self == Self::Depth {
+        if self.format() == vk::Format::D32_SFLOAT {
             vk::ImageAspectFlags::DEPTH
         } else {
             vk::ImageAspectFlags::COLOR
@@ -247,8 +250,8 @@ impl Image {
     }
 
     fn create_view(&self) -> Result<vk::ImageView> {
-        // The MSSM is an array whatever its number of levels; its shaders say so.
-        let array = self.kind == ImageKind::Bounds;
+        // An array whatever the number of its layers: its shaders say so.
+        let array = matches!(self.kind, ImageKind::Bounds | ImageKind::Layers);
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw)
             .view_type(if array {

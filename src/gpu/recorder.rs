@@ -6,6 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::device::{Gpu, failed};
+use super::draw::{Attachments, Draw, begin_rendering, record_draw};
 use super::memory::{Buffer, Image, Resources};
 use super::pass::{ComputePass, GraphicsPass};
 use crate::error::Result;
@@ -16,25 +17,6 @@ pub enum Groups<'a> {
     Direct([u32; 3]),
     /// A VkDispatchIndirectCommand at a byte offset.
     Indirect(&'a Buffer, u64),
-}
-
-/// What to draw.
-pub enum Draw<'a> {
-    /// [vertex] Without vertex input.
-    Vertices(u32),
-    /// A VkDrawIndexedIndirectCommand at a byte offset, with the index buffer.
-    Indexed {
-        indices: &'a Buffer,
-        command: (&'a Buffer, u64),
-    },
-}
-
-/// What is drawn to. Colours are cleared to zero and depth to 0, the far end.
-pub struct Attachments<'a> {
-    pub colors: &'a [&'a Image],
-    pub depth: &'a Image,
-    /// [texel] Frame round the image that nothing is drawn to.
-    pub margin: u32,
 }
 
 /// GPU time of each recorded pass, in the order of recording.
@@ -154,8 +136,18 @@ impl Recorder {
 
     /// Dispatches a compute pass.
     pub fn dispatch(&mut self, name: &str, pass: &ComputePass, push: Push, groups: Groups) {
+        self.dispatch_all(name, pass, &[(push, groups)]);
+    }
+
+    /// Dispatches a compute pass several times; each dispatch sees what those before it have written.
+    pub fn dispatch_all(&mut self, name: &str, pass: &ComputePass, dispatches: &[(Push, Groups)]) {
         let pass = &pass.0;
-        self.pass(name, |device, commands| {
+        self.begin_pass(name);
+        for (turn, (push, groups)) in dispatches.iter().enumerate() {
+            if turn > 0 {
+                self.order();
+            }
+            let (device, commands) = (&self.gpu.device, self.commands);
             // SAFETY: recording; the pass and the buffers it binds are alive until submission ends.
             unsafe {
                 device.cmd_bind_pipeline(commands, vk::PipelineBindPoint::COMPUTE, pass.pipeline);
@@ -168,7 +160,7 @@ impl Recorder {
                     &sets,
                     &[],
                 );
-                let bytes = bytemuck::bytes_of(&push);
+                let bytes = bytemuck::bytes_of(push);
                 device.cmd_push_constants(
                     commands,
                     pass.layout,
@@ -177,13 +169,14 @@ impl Recorder {
                     bytes,
                 );
                 match groups {
-                    Groups::Direct([x, y, z]) => device.cmd_dispatch(commands, x, y, z),
+                    Groups::Direct([x, y, z]) => device.cmd_dispatch(commands, *x, *y, *z),
                     Groups::Indirect(buffer, offset) => {
-                        device.cmd_dispatch_indirect(commands, buffer.raw, offset)
+                        device.cmd_dispatch_indirect(commands, buffer.raw, *offset)
                     }
                 }
             }
-        });
+        }
+        self.end_pass();
     }
 
     /// Draws with one or more pipelines into cleared attachments.
@@ -246,6 +239,40 @@ impl Recorder {
         self.change_layout(std::iter::once(from), copy, stay);
     }
 
+    /// Copies an image of one layer into a layer of another of the same size and format. Both leave their layout
+    /// for the copy, as in [`Self::copy_image`].
+    pub fn copy_layer(&mut self, name: &str, from: &Image, to: &Image, layer: u32) {
+        let stay = vk::ImageLayout::GENERAL;
+        let (source, target) = (
+            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+            vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+        );
+        self.change_layout(std::iter::once(from), stay, source);
+        self.change_layout(std::iter::once(to), stay, target);
+        self.pass(name, |device, commands| {
+            let layers = |image: &Image, first| {
+                vk::ImageSubresourceLayers::default()
+                    .aspect_mask(image.kind.aspect())
+                    .base_array_layer(first)
+                    .layer_count(1)
+            };
+            let region = [vk::ImageCopy::default()
+                .src_subresource(layers(from, 0))
+                .dst_subresource(layers(to, layer))
+                .extent(vk::Extent3D {
+                    width: from.width,
+                    height: from.height,
+                    depth: 1,
+                })];
+            // SAFETY: recording; both images are alive, and `to` has the layer.
+            unsafe {
+                device.cmd_copy_image(commands, from.raw, source, to.raw, target, &region);
+            }
+        });
+        self.change_layout(std::iter::once(from), source, stay);
+        self.change_layout(std::iter::once(to), target, stay);
+    }
+
     /// Submits and waits for the end. Returns the GPU time of each pass.
     pub fn submit_and_wait(&mut self) -> Result<Timings> {
         let device = &self.gpu.device;
@@ -303,18 +330,30 @@ impl Recorder {
 
     /// One pass: what was written before is visible to it.
     fn pass(&mut self, name: &str, record: impl FnOnce(&ash::Device, vk::CommandBuffer)) {
-        let timer = self.names.len() as u32;
-        self.names.push(name.to_owned());
+        self.begin_pass(name);
+        record(&self.gpu.device, self.commands);
+        self.end_pass();
+    }
+
+    fn begin_pass(&mut self, name: &str) {
         self.label(Some(name));
         // The timestamp before the barrier: lavapipe takes it at the next flush, which is the barrier.
-        self.timestamp(2 * timer);
+        self.timestamp(2 * self.names.len() as u32);
+        self.names.push(name.to_owned());
+        self.order();
+    }
+
+    fn end_pass(&self) {
+        self.timestamp(2 * self.names.len() as u32 - 1);
+        self.label(None);
+    }
+
+    /// What was written before is visible to what follows.
+    fn order(&self) {
         self.barrier(
             vk::PipelineStageFlags2::ALL_COMMANDS,
             vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE,
         );
-        record(&self.gpu.device, self.commands);
-        self.timestamp(2 * timer + 1);
-        self.label(None);
     }
 
     fn barrier(&self, stages: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
@@ -366,91 +405,6 @@ impl Drop for Recorder {
             device.destroy_query_pool(self.queries, None);
             device.destroy_fence(self.fence, None);
             device.destroy_command_pool(self.pool, None);
-        }
-    }
-}
-
-fn begin_rendering(device: &ash::Device, commands: vk::CommandBuffer, attachments: &Attachments) {
-    let attach = |image: &Image| {
-        vk::RenderingAttachmentInfo::default()
-            .image_view(image.view)
-            .image_layout(vk::ImageLayout::GENERAL)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE)
-    };
-    let colors: Vec<_> = attachments
-        .colors
-        .iter()
-        .map(|image| attach(image))
-        .collect();
-    let depth = attach(attachments.depth);
-    let (width, height) = (attachments.depth.width, attachments.depth.height);
-    let margin = attachments.margin;
-    let whole = vk::Rect2D {
-        offset: vk::Offset2D::default(),
-        extent: vk::Extent2D { width, height },
-    };
-    let inner = vk::Rect2D {
-        offset: vk::Offset2D {
-            x: margin as i32,
-            y: margin as i32,
-        },
-        extent: vk::Extent2D {
-            width: width.saturating_sub(2 * margin),
-            height: height.saturating_sub(2 * margin),
-        },
-    };
-    let viewport = vk::Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: width as f32,
-        height: height as f32,
-        min_depth: 0.0,
-        max_depth: 1.0,
-    };
-    let info = vk::RenderingInfo::default()
-        .render_area(whole)
-        .layer_count(1)
-        .color_attachments(&colors)
-        .depth_attachment(&depth);
-    // SAFETY: recording; the attachments are alive.
-    unsafe {
-        device.cmd_begin_rendering(commands, &info);
-        device.cmd_set_viewport(commands, 0, &[viewport]);
-        device.cmd_set_scissor(commands, 0, &[inner]);
-    }
-}
-
-fn record_draw(
-    device: &ash::Device,
-    commands: vk::CommandBuffer,
-    pass: &super::pass::Pass,
-    push: Push,
-    draw: &Draw,
-) {
-    let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
-    // SAFETY: recording inside rendering; the pass and the buffers are alive until submission ends.
-    unsafe {
-        device.cmd_bind_pipeline(commands, vk::PipelineBindPoint::GRAPHICS, pass.pipeline);
-        let sets = [pass.set];
-        device.cmd_bind_descriptor_sets(
-            commands,
-            vk::PipelineBindPoint::GRAPHICS,
-            pass.layout,
-            0,
-            &sets,
-            &[],
-        );
-        device.cmd_push_constants(commands, pass.layout, stages, 0, bytemuck::bytes_of(&push));
-        match draw {
-            Draw::Vertices(count) => device.cmd_draw(commands, *count, 1, 0, 0),
-            Draw::Indexed {
-                indices,
-                command: (buffer, offset),
-            } => {
-                device.cmd_bind_index_buffer(commands, indices.raw, 0, vk::IndexType::UINT32);
-                device.cmd_draw_indexed_indirect(commands, buffer.raw, *offset, 1, 0);
-            }
         }
     }
 }

@@ -15,7 +15,12 @@ pub struct Limits {
     pub buffer_bytes: u64,
     /// [byte] Memory of the largest device-local heap.
     pub memory_bytes: u64,
+    /// [turn] Loop turns after which the driver ends all loops of an invocation, whatever their conditions.
+    pub loop_turns: u32,
 }
+
+/// [turn] lavapipe allows 65535 in sum over all loops, and the passes count only those of their large loops.
+const LAVAPIPE_LOOP_TURNS: u32 = 60000;
 
 /// The features that are enabled: all of these are required.
 #[derive(Default)]
@@ -79,7 +84,7 @@ const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 4] = [
 ];
 
 /// [descriptor] Storage buffers that the largest pass binds.
-const STORAGE_BUFFERS: u32 = 11;
+const STORAGE_BUFFERS: u32 = 13;
 /// [invocation] Largest work group.
 const GROUP_INVOCATIONS: u32 = 64;
 
@@ -94,6 +99,14 @@ pub fn queue_family(instance: &ash::Instance, device: vk::PhysicalDevice) -> Opt
         .map(|index| index as u32)
 }
 
+fn driver_id(instance: &ash::Instance, device: vk::PhysicalDevice) -> vk::DriverId {
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+    // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
+    unsafe { instance.get_physical_device_properties2(device, &mut properties) };
+    driver.driver_id
+}
+
 pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
     // SAFETY: the device was enumerated from this instance.
     let (properties, memory) = unsafe {
@@ -102,6 +115,7 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
             instance.get_physical_device_memory_properties(device),
         )
     };
+    let driver = driver_id(instance, device);
     let heaps = memory.memory_heaps_as_slice().iter();
     // SAFETY: as above.
     let array = unsafe {
@@ -124,6 +138,10 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
             .map(|heap| heap.size)
             .max()
             .unwrap_or(0),
+        loop_turns: match driver {
+            vk::DriverId::MESA_LLVMPIPE => LAVAPIPE_LOOP_TURNS,
+            _ => u32::MAX,
+        },
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Plan;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
-use crate::shared::{self, Fit, Kernel, Lists, Packet, SECTOR_STEPS, View};
+use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, SECTOR_STEPS, View};
 use crate::shot::Shot;
 use crate::technique::{Recipe, Work};
 
@@ -14,7 +14,27 @@ impl Plan {
         let map = u64::from(self.map) * u64::from(self.map);
         let views = self.views().count() as u64;
         let tables = self.views().filter(|view| view.sectors.is_some()).count() as u64;
-        let any = |test: fn(&Recipe) -> bool| self.lights.iter().any(|light| light.needs(test));
+        let any = |test: fn(&Recipe) -> bool| self.needs(test);
+        let recipes = || self.lights.iter().filter(|light| !light.views.is_empty());
+        let layers = recipes()
+            .map(|light| light.recipe.layers)
+            .max()
+            .unwrap_or(0);
+        let words = recipes()
+            .filter(|light| self.rounds(&light.recipe) > 1)
+            .map(|light| light.recipe.words)
+            .max()
+            .unwrap_or(0);
+        let grid = u64::from(self.size.0.div_ceil(shot.settings.packet.0))
+            * u64::from(self.size.1.div_ceil(shot.settings.packet.1));
+        // One for each pixel or for each lane of each packet.
+        let lanes = u64::from(shot.settings.packet.0 * shot.settings.packet.1);
+        let progress = if words > 0 {
+            (grid * lanes).max(pixels)
+        } else {
+            0
+        };
+        let padded = u64::from(self.map.next_power_of_two());
         let triangles = scene.triangles.len() as u64;
         let textured = u64::from(self.textured);
         let per_pixel = |needed: bool, bytes: usize| if needed { pixels * bytes as u64 } else { 0 };
@@ -23,8 +43,6 @@ impl Plan {
             .iter()
             .map(|texture| texture.rgba.len())
             .sum();
-        let grid = u64::from(self.size.0.div_ceil(shot.settings.packet.0))
-            * u64::from(self.size.1.div_ceil(shot.settings.packet.1));
         self.resources = vec![
             ("positions", scene.positions.len() as u64 * 12),
             ("triangles", triangles * 12),
@@ -50,6 +68,15 @@ impl Plan {
             ("caster_indices", if views > 0 { triangles * 12 } else { 0 }),
             ("shadow_map", map * 4),
             ("mssm", map * 8 * u64::from(self.levels)),
+            ("layers", map * 4 * u64::from(layers)),
+            (
+                "hsm",
+                if any(|recipe| recipe.hsm) {
+                    u64::from(self.map.div_ceil(2)) * padded * 8
+                } else {
+                    0
+                },
+            ),
             (
                 "kernels",
                 per_pixel(any(|recipe| recipe.mssm), size_of::<Kernel>()),
@@ -69,7 +96,16 @@ impl Plan {
             ("occlusion", per_pixel(views > 0, 4)),
             ("views", views * size_of::<View>() as u64),
             ("fits", views * size_of::<Fit>() as u64),
-            ("lists", views * size_of::<Lists>() as u64),
+            (
+                "lists",
+                if any(Recipe::has_lists) {
+                    views * size_of::<Lists>() as u64
+                } else {
+                    0
+                },
+            ),
+            ("partial", pixels * 4 * u64::from(words)),
+            ("progress", progress * size_of::<Progress>() as u64),
             ("sectors", tables * u64::from(SECTOR_STEPS + 1) * 4),
             ("visibility", pixels * 4 * self.lights.len() as u64),
             ("picture", per_pixel(self.outputs.picture, 4)),
@@ -97,6 +133,8 @@ impl Plan {
             "albedo",
             "shadow_map",
             "mssm",
+            "layers",
+            "hsm",
         ];
         for &(name, bytes) in &self.resources {
             let (limit, what) = if images.contains(&name) {

@@ -1,6 +1,6 @@
 //! Lights and their views as the device sees them.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{Variant, ViewPlan};
 use crate::scene::{AreaLight, LightShape};
@@ -29,12 +29,7 @@ pub fn view_plan(
     let rim = part.rim.map_or([0.0; 3], |(center, radius)| {
         [center.x as f32, center.y as f32, radius as f32]
     });
-    // A light without extent is a point in the middle of half sizes that can be divided by.
-    let (half, (lower, upper)) = if light.is_point() {
-        (DVec2::ONE, (DVec2::ZERO, DVec2::ZERO))
-    } else {
-        (part.half_size, part.extent)
-    };
+    let (half, (lower, upper)) = (part.half_size, part.extent);
     let sectors = part.rim.map(|_| part.sectors());
     let area = sectors
         .as_ref()

@@ -38,6 +38,8 @@ pub fn create(
         "occlusion",
         "fits",
         "lists",
+        "partial",
+        "progress",
         "visibility",
         "picture",
     ];
@@ -132,8 +134,19 @@ fn create_views(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resul
     Ok(())
 }
 
+/// `size` if the plan has the image, or else that of a placeholder.
+fn side(plan: &Plan, name: &str, size: (u32, u32)) -> (u32, u32) {
+    if planned(plan, name) > 0 {
+        size
+    } else {
+        (1, 1)
+    }
+}
+
 fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Result<()> {
     let map = (plan.map.max(1), plan.map.max(1));
+    let layers = plan.lights.iter().map(|light| light.recipe.layers);
+    let layers = layers.max().unwrap_or(0).max(1);
     let images = [
         ("camera_depth", ImageKind::Depth, plan.size, 1),
         ("position_world", ImageKind::Vector, plan.size, 1),
@@ -143,8 +156,20 @@ fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resu
         (
             "mssm",
             ImageKind::Bounds,
-            if plan.levels > 0 { map } else { (1, 1) },
+            side(plan, "mssm", map),
             plan.levels.max(1),
+        ),
+        (
+            "layers",
+            ImageKind::Layers,
+            side(plan, "layers", map),
+            layers,
+        ),
+        (
+            "hsm",
+            ImageKind::Bounds,
+            side(plan, "hsm", (map.0.div_ceil(2), map.0.next_power_of_two())),
+            1,
         ),
     ];
     for (name, kind, size, layers) in images {

@@ -2,21 +2,25 @@
 
 use crate::gpu::Specialization;
 use crate::plan::{Plan, Variant};
-use crate::shot::{Leaf, Mapping, Settings, Technique};
-use crate::technique::Work;
-
-/// Turns of loops that any driver allows an invocation: lavapipe ends all loops after 65535 in sum,
-/// without a word. What is not finished by then is reported (`Fit::unfinished`).
-const STEPS_MAX: u32 = 60000;
+use crate::shot::{Leaf, Mapping, Occluders, Pattern, Settings, Technique};
+use crate::technique::{Recipe, Work};
 
 /// Constants of the passes of a view.
-pub fn of_view(plan: &Plan, settings: &Settings, variant: Variant, work: Work) -> Specialization {
+pub fn of_view(
+    plan: &Plan,
+    settings: &Settings,
+    recipe: &Recipe,
+    variant: Variant,
+    work: Work,
+) -> Specialization {
     // Whoever walks the pixel list has packets of one pixel; so have techniques without packets.
     let packets = settings.technique == Technique::PacketContour && work != Work::PixelList;
     let packet = if packets { settings.packet } else { (1, 1) };
     let lanes = packets && settings.mapping == Mapping::Lanes;
     let footprint = settings.footprint_pruning && settings.technique == Technique::PacketContour;
     let held = if lanes { 1 } else { packet.0 * packet.1 };
+    let gap_filling = settings.gap_filling && settings.technique != Technique::DepthPeeling;
+    let filter_reach = settings.technique == Technique::Hard && settings.percentage_closer;
     vec![
         (0, packet.0),
         (1, packet.1),
@@ -29,8 +33,24 @@ pub fn of_view(plan: &Plan, settings: &Settings, variant: Variant, work: Work) -
         (8, u32::from(variant.accumulate)),
         (9, u32::from(plan.textured)),
         (10, held),
-        (11, STEPS_MAX),
+        (11, plan.loop_turns),
+        (12, plan.rounds(recipe)),
+        (13, recipe.layers.max(1)),
+        (15, u32::from(gap_filling)),
+        (16, u32::from(settings.occluders == Occluders::Contours)),
+        (17, settings.light_samples),
+        (18, u32::from(settings.pattern == Pattern::Jittered)),
+        (19, settings.blocker_samples),
+        (20, settings.filter_samples),
+        (21, u32::from(filter_reach)),
     ]
+}
+
+/// Constants of a draw of casters; `peel`: behind the layers that are kept already.
+pub fn of_casters(base: &Specialization, masked: bool, peel: bool) -> Specialization {
+    let mut constants = base.clone();
+    constants.extend([(14, u32::from(peel)), (22, u32::from(masked))]);
+    constants
 }
 
 /// Constants of passes that no view's variant matters to.

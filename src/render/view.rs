@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::gpu::{
     Attachments, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Recorder, Resources,
+    Specialization,
 };
 use crate::plan::{Plan, Variant};
 use crate::shared::{Fit, GROUP_SIZE, Lists, Push, TILE_SIZE};
@@ -22,10 +23,76 @@ pub struct ViewPasses {
     receivers: ComputePass,
     casters: ComputePass,
     fit: ComputePass,
+    first_layer: CasterPasses,
+    /// What draws the casters behind the layers that are kept.
+    next_layers: Option<CasterPasses>,
+    mssm: Option<ComputePass>,
+    hsm: Option<ComputePass>,
+    stages: Vec<(Stage, ComputePass)>,
+    layers: u32,
+    /// [dispatch] In how many rounds lists are worked off at most.
+    rounds: u32,
+}
+
+/// Draws of opaque and of alpha-masked casters.
+struct CasterPasses {
     opaque: GraphicsPass,
     masked: Option<GraphicsPass>,
-    mssm: Option<ComputePass>,
-    stages: Vec<(Stage, ComputePass)>,
+}
+
+impl CasterPasses {
+    fn new(
+        gpu: &Arc<Gpu>,
+        plan: &Plan,
+        base: &Specialization,
+        resources: &Resources,
+        peel: bool,
+    ) -> Result<Self> {
+        let draw = |name: &str, masked: bool| {
+            let state = GraphicsState {
+                vertex: "shadow_map.vert",
+                fragment: (masked || peel).then_some("shadow_map.frag"),
+                colors: &[],
+            };
+            let constants = specialization::of_casters(base, masked, peel);
+            GraphicsPass::new(gpu, name, &state, &constants, resources)
+        };
+        let name = if peel { "peel" } else { "shadow_map" };
+        Ok(Self {
+            opaque: draw(name, false)?,
+            masked: plan
+                .masked
+                .then(|| draw(&format!("{name} (masked)"), true))
+                .transpose()?,
+        })
+    }
+
+    /// Draws the casters of view `push.index` into the shadow map.
+    fn record(
+        &self,
+        recorder: &mut Recorder,
+        name: &str,
+        resources: &Resources,
+        push: Push,
+    ) -> Result<()> {
+        let fits = resources.buffer("fits")?;
+        let indices = resources.buffer("caster_indices")?;
+        let casters = |offset| Draw::Indexed {
+            indices,
+            command: (fits, in_fit(push.index, offset)),
+        };
+        let mut draws = vec![(&self.opaque, casters(offset_of!(Fit, opaque_draw)))];
+        if let Some(masked) = &self.masked {
+            draws.push((masked, casters(offset_of!(Fit, masked_draw))));
+        }
+        let attachments = Attachments {
+            colors: &[],
+            depth: resources.image("shadow_map")?,
+            margin: MAP_MARGIN,
+        };
+        recorder.draw(name, push, &attachments, &draws);
+        Ok(())
+    }
 }
 
 impl ViewPasses {
@@ -37,37 +104,33 @@ impl ViewPasses {
         variant: Variant,
         resources: &Resources,
     ) -> Result<Self> {
-        let constants = |work| specialization::of_view(plan, settings, variant, work);
+        let constants = |work| specialization::of_view(plan, settings, recipe, variant, work);
         let compute = |name: &str, shader: &str, work| {
             ComputePass::new(gpu, name, shader, &constants(work), resources)
         };
-        let draw = |name: &str, fragment| {
-            let state = GraphicsState {
-                vertex: "shadow_map.vert",
-                fragment,
-                colors: &[],
-            };
-            GraphicsPass::new(gpu, name, &state, &constants(Work::Packets), resources)
+        let casters =
+            |peel| CasterPasses::new(gpu, plan, &constants(Work::Packets), resources, peel);
+        let structure = |wanted: bool, name: &str, shader: &str| {
+            wanted
+                .then(|| compute(name, shader, Work::Pixels))
+                .transpose()
         };
         let stage = |stage: &Stage| Ok((*stage, compute(stage.name, stage.shader, stage.work)?));
         Ok(Self {
             receivers: compute("receivers", "receivers.comp", Work::Pixels)?,
             casters: compute("casters", "casters.comp", Work::Pixels)?,
             fit: compute("fit", "fit.comp", Work::Packets)?,
-            opaque: draw("shadow_map", None)?,
-            masked: plan
-                .masked
-                .then(|| draw("shadow_map (masked)", Some("shadow_map.frag")))
-                .transpose()?,
-            mssm: recipe
-                .mssm
-                .then(|| compute("mssm", "mssm.comp", Work::Pixels))
-                .transpose()?,
+            first_layer: casters(false)?,
+            next_layers: (recipe.layers > 1).then(|| casters(true)).transpose()?,
+            mssm: structure(recipe.mssm, "mssm", "mssm.comp")?,
+            hsm: structure(recipe.hsm, "hsm", "hsm.comp")?,
             stages: recipe.stages.iter().map(stage).collect::<Result<_>>()?,
+            layers: recipe.layers,
+            rounds: plan.rounds(recipe),
         })
     }
 
-    /// Shadow map and MSSM of view `index`, fitted to what can cast.
+    /// Shadow map and what is built from it, for view `index`, fitted to what can cast.
     pub fn record_map(
         &self,
         recorder: &mut Recorder,
@@ -81,37 +144,50 @@ impl ViewPasses {
         recorder.dispatch("receivers", &self.receivers, push, reduction(pixels));
         recorder.dispatch("casters", &self.casters, push, reduction(triangles));
         recorder.dispatch("fit", &self.fit, push, Groups::Direct([1, 1, 1]));
+        self.first_layer
+            .record(recorder, "shadow_map", resources, push)?;
+        self.record_structures(recorder, plan, resources, index)?;
+        self.record_layers(recorder, resources, index)
+    }
 
-        let fits = resources.buffer("fits")?;
-        let indices = resources.buffer("caster_indices")?;
-        let casters = |offset| Draw::Indexed {
-            indices,
-            command: (fits, in_fit(index, offset)),
-        };
-        let mut draws = vec![(&self.opaque, casters(offset_of!(Fit, opaque_draw)))];
-        if let Some(masked) = &self.masked {
-            draws.push((masked, casters(offset_of!(Fit, masked_draw))));
-        }
-        let attachments = Attachments {
-            colors: &[],
-            depth: resources.image("shadow_map")?,
-            margin: MAP_MARGIN,
-        };
-        recorder.draw("shadow_map", push, &attachments, &draws);
-
+    fn record_structures(
+        &self,
+        recorder: &mut Recorder,
+        plan: &Plan,
+        resources: &Resources,
+        index: u32,
+    ) -> Result<()> {
         if let Some(mssm) = &self.mssm {
+            let fits = resources.buffer("fits")?;
             for level in 0..plan.levels {
-                let offset = in_fit(
-                    index,
-                    offset_of!(Fit, level_groups) + level as usize * size_of::<[u32; 3]>(),
-                );
-                recorder.dispatch(
-                    "mssm",
-                    mssm,
-                    Push { index, level },
-                    Groups::Indirect(fits, offset),
-                );
+                let offset = offset_of!(Fit, level_groups) + level as usize * size_of::<[u32; 3]>();
+                let groups = Groups::Indirect(fits, in_fit(index, offset));
+                recorder.dispatch("mssm", mssm, Push { index, level }, groups);
             }
+        }
+        if let Some(hsm) = &self.hsm {
+            for level in 1..=plan.hsm_levels() {
+                let side = plan.map.div_ceil(1 << level).div_ceil(TILE_SIZE);
+                let groups = Groups::Direct([side, side, 1]);
+                recorder.dispatch("hsm", hsm, Push { index, level }, groups);
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps layer after layer and draws the next into the shadow map.
+    fn record_layers(
+        &self,
+        recorder: &mut Recorder,
+        resources: &Resources,
+        index: u32,
+    ) -> Result<()> {
+        let (map, layers) = (resources.image("shadow_map")?, resources.image("layers")?);
+        for level in 0..self.layers {
+            if let (1.., Some(casters)) = (level, &self.next_layers) {
+                casters.record(recorder, "peel", resources, Push { index, level })?;
+            }
+            recorder.copy_layer("keep_layer", map, layers, level);
         }
         Ok(())
     }
@@ -125,23 +201,27 @@ impl ViewPasses {
         index: u32,
     ) -> Result<()> {
         let (fits, lists) = (resources.buffer("fits")?, resources.buffer("lists")?);
+        let push = |level| Push { index, level };
         for (stage, pass) in &self.stages {
-            let groups = match stage.work {
-                Work::Pixels => Groups::Direct(tiles(plan)),
-                Work::Kernels => {
-                    Groups::Indirect(fits, in_fit(index, offset_of!(Fit, kernel_groups)))
-                }
-                Work::Packets => {
-                    Groups::Indirect(fits, in_fit(index, offset_of!(Fit, classify_groups)))
-                }
-                Work::PacketList => {
-                    Groups::Indirect(lists, in_lists(index, offset_of!(Lists, packet_groups)))
-                }
-                Work::PixelList => {
-                    Groups::Indirect(lists, in_lists(index, offset_of!(Lists, pixel_groups)))
-                }
+            let once = |groups| vec![(push(0), groups)];
+            let in_rounds = |offset: usize| -> Vec<_> {
+                let groups = |round: u32| {
+                    let offset = offset + round as usize * size_of::<[u32; 3]>();
+                    Groups::Indirect(lists, in_lists(index, offset))
+                };
+                (0..self.rounds)
+                    .map(|round| (push(round), groups(round)))
+                    .collect()
             };
-            recorder.dispatch(stage.name, pass, Push { index, level: 0 }, groups);
+            let in_fit = |offset| Groups::Indirect(fits, in_fit(index, offset));
+            let dispatches = match stage.work {
+                Work::Pixels => once(Groups::Direct(tiles(plan))),
+                Work::Kernels => once(in_fit(offset_of!(Fit, kernel_groups))),
+                Work::Packets => once(in_fit(offset_of!(Fit, classify_groups))),
+                Work::PacketList => in_rounds(offset_of!(Lists, packet_groups)),
+                Work::PixelList => in_rounds(offset_of!(Lists, pixel_groups)),
+            };
+            recorder.dispatch_all(stage.name, pass, &dispatches);
         }
         Ok(())
     }

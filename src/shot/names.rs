@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Leaf, Mapping, Technique};
+use super::{Leaf, Mapping, Occluders, Pattern, Technique};
 use crate::Error;
 
 /// Gives an enum `ALL`, `Display` and `FromStr` by one table of names.
@@ -55,5 +55,23 @@ named!(
     "technique",
     PacketContour = "packet-contour",
     PixelContour = "pixel-contour",
-    Hard = "hard"
+    Micropatch = "micropatch",
+    MicropatchHierarchical = "micropatch-hierarchical",
+    Bitmask = "bitmask",
+    DepthPeeling = "depth-peeling",
+    Pcss = "pcss",
+    Hard = "hard",
+    ReferenceMaps = "reference-maps"
+);
+named!(
+    Pattern,
+    "sample pattern",
+    Regular = "regular",
+    Jittered = "jittered"
+);
+named!(
+    Occluders,
+    "kind of occluder",
+    Micropatches = "micropatches",
+    Contours = "contours"
 );

@@ -1,6 +1,8 @@
-//! Hard shadows from the nearest sample [Williams78]; with split > 1 the mean of as many hard shadows.
+//! Hard shadows from the nearest sample [Williams78], or from the share of 3×3 samples that hide the pixel
+//! (percentage-closer filtering); with split > 1 the mean of as many hard shadows.
 //!
-//! Right: lights without extent. Wrong: every penumbra; edges alias in steps of a texel.
+//! Right: lights without extent. Wrong: every penumbra; edges alias in steps of a texel, and the filter blurs them
+//! by the same three texels everywhere.
 
 use super::{Recipe, Stage, Work};
 
@@ -11,7 +13,7 @@ pub fn recipe() -> Recipe {
         work: Work::Pixels,
     };
     Recipe {
-        mssm: false,
         stages: vec![stage],
+        ..Recipe::default()
     }
 }

@@ -20,5 +20,10 @@ pub fn recipe(settings: &Settings) -> Recipe {
     } else {
         vec![KERNELS, CLASSIFY, PACKETS, PIXELS]
     };
-    Recipe { mssm: true, stages }
+    Recipe {
+        mssm: true,
+        words: 1,
+        stages,
+        ..Recipe::default()
+    }
 }

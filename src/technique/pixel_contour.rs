@@ -4,20 +4,13 @@
 //! Right and wrong as `packet_contour`, whose baseline it is: flat over every cell of the kernel, or
 //! hierarchical over the MSSM.
 
-use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, Work};
+use super::{CLASSIFY, KERNELS, PIXELS, Recipe};
 use crate::shot::Settings;
 
-const FLAT: Stage = Stage {
-    name: "contour_visibility",
-    shader: "contour_visibility.comp",
-    work: Work::Kernels,
-};
-
 pub fn recipe(settings: &Settings) -> Recipe {
-    let stages = if settings.hierarchical {
-        vec![KERNELS, CLASSIFY, PIXELS]
-    } else {
-        vec![KERNELS, FLAT]
-    };
-    Recipe { mssm: true, stages }
+    let mut recipe = Recipe::over_pixels("contour_visibility", "contour_visibility.comp");
+    if settings.hierarchical {
+        recipe.stages = vec![KERNELS, CLASSIFY, PIXELS];
+    }
+    recipe
 }

@@ -90,7 +90,7 @@ fn check_stats(stats: &Value) {
     let mut counters = keys(&stats["counters"]);
     counters.sort_unstable();
     let expected = "coherent_packets edges_extracted lit nodes_visited packets penumbra pixels \
-                    reprocessed_packets umbra";
+                    reprocessed_packets samples_read umbra";
     assert_eq!(counters.join(" "), expected);
     let memory = stats["memory_bytes"].as_object().unwrap();
     let sum: u64 = memory.values().filter_map(Value::as_u64).sum();

@@ -1,0 +1,95 @@
+// Micropatches: each occluding texel of the shadow map is a rectangle parallel to the map at the texel's depth,
+// and their back-projections' areas add up [AHL06, GBP06]. Needs `listed.glsl` and `radial.glsl`.
+
+// [half sizes²] The sub-light's area inside a box.
+float area_in_box(View view, vec2 lower, vec2 upper) {
+    if (!ROUND) {
+        vec2 size = max(min(upper, view.extent.zw) - max(lower, view.extent.xy), vec2(0.0));
+        return size.x * size.y;
+    }
+    vec3 corners[4] = vec3[4](vec3(lower, 1.0), vec3(upper.x, lower.y, 1.0), vec3(upper, 1.0),
+                              vec3(lower.x, upper.y, 1.0));
+    // The centre is left of a side when it is on the box's side of it.
+    vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
+    float area = all(greaterThan(sides, vec4(0.0))) ? view.area : 0.0;
+    [[unroll]] for (int i = 0; i < 4; ++i) area -= area_beyond(view, corners[i], corners[(i + 1) & 3], sides[i]);
+    return area;
+}
+
+// [half sizes²] The sub-light's area that a quadrangle of map points (Δt, d), counter-clockwise, hides.
+float area_in_quadrangle(View view, Receiver receiver, vec2 lower, vec2 upper, vec4 depths) {
+    vec2 at[4] = vec2[4](lower, vec2(upper.x, lower.y), upper, vec2(lower.x, upper.y));
+    vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
+    float area = all(greaterThan(sides, vec4(0.0))) ? view.area : 0.0;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        int next = (i + 1) & 3;
+        area -= area_beyond(view, back_project(receiver, at[i], depths[i]), back_project(receiver, at[next], depths[next]),
+                            sides[i]);
+    }
+    return area;
+}
+
+// [half sizes²] What the patch at `texel` hides of the sub-light. depths: its own, its left neighbour's and its
+// bottom neighbour's, its own again where the neighbour is no occluder. With GAP_FILLING the patch's left and
+// bottom sides reach out to where the neighbours end, if that closes a gap [GBP06].
+// DEVIATION [GBP06]: seen from a side face a patch is no box on the light; there its corners move.
+float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
+    vec2 lower = vec2(texel) - 0.5 - receiver.t;
+    vec2 upper = lower + 1.0;
+    vec2 neighbours = GAP_FILLING ? depths.yz : depths.xx;
+    if (!OBLIQUE) {
+        vec2 scale = vec2(receiver.ku.x, receiver.kv.y);
+        vec2 own = scale * lower / (depths.x - receiver.d);
+        vec2 reached = scale * lower / (neighbours - receiver.d);
+        return area_in_box(view, min(own, reached), scale * upper / (depths.x - receiver.d));
+    }
+    vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
+                      lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
+    float corner = outer.x == depths.x ? outer.y : outer.x;
+    return area_in_quadrangle(view, receiver, lower, upper, vec4(corner, outer.y, depths.x, outer.x));
+}
+
+// `depth` if it belongs to an occluder, or else `own`.
+float occluder_or(Receiver receiver, float depth, float own) { return depth > receiver.biased ? depth : own; }
+
+// As `patch_area`, with the neighbours' depths read from the map.
+float patch_area_at(Listed listed, uint layer, ivec2 texel, float depth) {
+    vec3 depths = vec3(depth);
+    if (GAP_FILLING) {
+        depths.y = occluder_or(listed.receiver, depth_at(layer, max(texel - ivec2(1, 0), ivec2(0))), depth);
+        depths.z = occluder_or(listed.receiver, depth_at(layer, max(texel - ivec2(0, 1), ivec2(0))), depth);
+        samples_read += 2u;
+    }
+    ++edges_extracted;
+    return patch_area(listed.view, listed.receiver, texel, depths);
+}
+
+// Goes on to the next occluding texel; `depth` is its depth, or 0 when there is none left.
+void next_patch(Listed listed, uint layer, inout Scan scan, out ivec2 texel, out float depth) {
+    texel = scan.at;
+    depth = 0.0;
+    uint turns = 0u;
+    while (depth == 0.0 && !at_end(scan) && !out_of_turns(turns)) {
+        ++turns;
+        texel = scan.at;
+        depth = occluder_or(listed.receiver, depth_at(layer, texel), 0.0);
+        advance(scan);
+    }
+    nodes_visited += turns;
+    samples_read += turns;
+    steps += subgroupMax(turns) + 1u;
+}
+
+// Sum of the areas of a layer's patches. The loops are nested so that invocations side by side look for occluders
+// together and add up together.
+float sum_patches(Listed listed, uint layer, inout Scan scan) {
+    float sum = 0.0;
+    while (!at_end(scan) && !out_of_turns(0u)) {
+        ++steps;
+        ivec2 texel;
+        float depth;
+        next_patch(listed, layer, scan, texel, depth);
+        if (depth > 0.0) sum += patch_area_at(listed, layer, texel, depth);
+    }
+    return sum;
+}

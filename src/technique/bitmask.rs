@@ -1,0 +1,18 @@
+//! Bitmask soft shadows [SS07]: four neighbouring occluder samples span a microquad, whose back-projection covers
+//! samples of the light; a bit is covered once, however many occluders hide it, of however many layers.
+//!
+//! Right: occluders that overlap on the light. Wrong: visibility has as many steps as the light has samples (banding;
+//! jittered samples break them up, always in the same way); occluders shrink by half a texel, and what is a single
+//! sample wide is missed; with one layer, what the centre of the light cannot see is missed too.
+
+use super::Recipe;
+use crate::shot::Settings;
+
+pub fn recipe(settings: &Settings) -> Recipe {
+    let layers = settings.layers;
+    Recipe {
+        layers: if layers > 1 { layers } else { 0 },
+        words: (settings.light_samples * settings.light_samples).div_ceil(32),
+        ..Recipe::over_pixels("bitmask_visibility", "bitmask_visibility.comp")
+    }
+}

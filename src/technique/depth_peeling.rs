@@ -1,0 +1,18 @@
+//! Soft shadow mapping with depth peeling [BCS08]: several layers of the shadow map, seen from the light's centre,
+//! each with its micropatches or its contours.
+//!
+//! Right: occluders behind other occluders are no longer missed, and their patches close the gaps of the first layer,
+//! without gap filling. Wrong: the areas of all layers add up, so a solid whose front and back are both layers hides
+//! its part of the light twice: shadows are too dark. How many layers are needed depends on the scene.
+//! DEVIATION [BCS08]: no midpoints between layers against self-shadowing; all techniques share one bias.
+
+use super::Recipe;
+use crate::shot::Settings;
+
+pub fn recipe(settings: &Settings) -> Recipe {
+    let layers = settings.layers;
+    Recipe {
+        layers: if layers > 1 { layers } else { 0 },
+        ..Recipe::over_pixels("depth_peeling_visibility", "depth_peeling_visibility.comp")
+    }
+}

@@ -1,0 +1,13 @@
+//! Micropatches [GBP06, after AHL06]: every texel of the kernel that occludes is a rectangle at its depth; the areas
+//! of their back-projections add up.
+//!
+//! Right: a plate parallel to the light, and any occluder of one depth. Wrong: between patches of different depths
+//! there are gaps, through which light leaks, or overlaps, which count twice. Gap filling closes the gaps to the left
+//! and below and lets occluders grow. A texel is opaque to its border, so occluders are too large by up to half a
+//! texel; what the centre of the light cannot see is missed.
+
+use super::Recipe;
+
+pub fn recipe() -> Recipe {
+    Recipe::over_pixels("micropatch_visibility", "micropatch_visibility.comp")
+}

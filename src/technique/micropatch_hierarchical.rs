@@ -1,0 +1,14 @@
+//! Micropatches found by a walk through a min-max pyramid of the shadow map [DU07]: squares without an occluder are
+//! passed by.
+//!
+//! Right and wrong as `micropatch`, whose patches it finds. Occluders cannot be pruned: each of their texels is a
+//! patch, where contours have only their borders to visit.
+
+use super::Recipe;
+
+pub fn recipe() -> Recipe {
+    Recipe {
+        hsm: true,
+        ..Recipe::over_pixels("micropatch_visibility", "micropatch_tree_visibility.comp")
+    }
+}

@@ -1,0 +1,20 @@
+//! Percentage-closer soft shadows [Fernando05], what games ship: a search for blockers around the pixel's projection,
+//! whose mean depth tells how wide to filter the hard shadow.
+//!
+//! Right: contact hardening, at a cost that depends on two sample counts only. Wrong: the penumbra of an occluder
+//! parallel to the light is right, any other is a guess; blockers of different depths are averaged into one that is
+//! nowhere; blockers that the search misses leave holes; few samples are noise.
+
+use super::{Recipe, Stage, Work};
+
+pub fn recipe() -> Recipe {
+    let stage = Stage {
+        name: "pcss_visibility",
+        shader: "pcss_visibility.comp",
+        work: Work::Pixels,
+    };
+    Recipe {
+        stages: vec![stage],
+        ..Recipe::default()
+    }
+}

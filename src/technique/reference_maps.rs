@@ -1,0 +1,37 @@
+//! The mean of many hard shadow maps from points all over the light: the papers' own reference ([Yang09] fig. 11,
+//! [Schwarz08] fig. 10 use 1024).
+//!
+//! Right: converges to the truth with the number of maps, but for what a map's texels and the bias leave out. Wrong:
+//! visibility has as many steps as there are maps.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+
+use super::{Recipe, hard};
+use crate::scene::{AreaLight, LightShape};
+use crate::shot::Settings;
+use crate::sub_light::SubLight;
+
+pub fn recipe() -> Recipe {
+    hard::recipe()
+}
+
+/// The plastic number: powers of its inverse place the points of Roberts' R2 sequence.
+const PLASTIC: f64 = 1.324_717_957_244_746;
+
+/// Points of a low-discrepancy sequence on the light, all of the same weight.
+pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<SubLight> {
+    let (u, v, _) = light.frame();
+    let (half_u, half_v) = light.half_size();
+    let point = |index: u32| {
+        let share = DVec2::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC)) * f64::from(index);
+        let at = (share + 0.5).fract();
+        let at = match light.shape {
+            LightShape::Rect { .. } => 2.0 * at - 1.0,
+            LightShape::Disc { .. } => at.x.sqrt() * DVec2::from_angle(2.0 * PI * at.y),
+        };
+        SubLight::point(light.center + u * (at.x * half_u) + v * (at.y * half_v))
+    };
+    (0..settings.maps).map(point).collect()
+}

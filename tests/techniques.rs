@@ -1,0 +1,180 @@
+//! The sibling techniques: what all of them promise, and the artefacts that each is known for. An artefact that is
+//! missing would mean that a technique was improved silently, and that comparing with it is worth nothing.
+
+#[path = "support/gpu.rs"]
+mod support;
+
+#[path = "techniques/artefacts.rs"]
+mod artefacts;
+#[path = "techniques/goldens.rs"]
+mod goldens;
+
+use glam::{DVec2, DVec3, Vec3};
+use halfshade::shared::{Fit, View};
+use halfshade::shot::{Occluders, Pattern, Settings, Shot, Technique};
+use support::{
+    Triangles, camera, disc_light, load, rectangle, rectangle_light, renderer, shot, with_gpu,
+};
+
+/// Every sibling with every choice that has a code of its own, small enough for tests.
+fn siblings() -> Vec<(&'static str, Settings)> {
+    let usual = |technique| Settings {
+        map: 64,
+        maps: 16,
+        ..Settings::usual(technique)
+    };
+    vec![
+        ("packet-contour", usual(Technique::PacketContour)),
+        ("pixel-contour", usual(Technique::PixelContour)),
+        (
+            "pixel-contour hierarchical",
+            Settings {
+                hierarchical: true,
+                ..usual(Technique::PixelContour)
+            },
+        ),
+        ("micropatch", usual(Technique::Micropatch)),
+        (
+            "micropatch with gaps",
+            Settings {
+                gap_filling: false,
+                ..usual(Technique::Micropatch)
+            },
+        ),
+        (
+            "micropatch-hierarchical",
+            usual(Technique::MicropatchHierarchical),
+        ),
+        (
+            "bitmask 8 regular",
+            Settings {
+                light_samples: 8,
+                pattern: Pattern::Regular,
+                ..usual(Technique::Bitmask)
+            },
+        ),
+        (
+            "bitmask 16 jittered, 2 layers",
+            Settings {
+                layers: 2,
+                ..usual(Technique::Bitmask)
+            },
+        ),
+        ("depth-peeling", usual(Technique::DepthPeeling)),
+        (
+            "depth-peeling contours",
+            Settings {
+                layers: 2,
+                occluders: Occluders::Contours,
+                ..usual(Technique::DepthPeeling)
+            },
+        ),
+        ("pcss", usual(Technique::Pcss)),
+        ("hard", usual(Technique::Hard)),
+        (
+            "hard 3x3",
+            Settings {
+                percentage_closer: true,
+                ..usual(Technique::Hard)
+            },
+        ),
+        ("reference-maps", usual(Technique::ReferenceMaps)),
+    ]
+}
+
+/// t_p and the biased depth of a pixel, as `project` in `depth.glsl` has them for a receiver that the map's axis meets
+/// at a right angle.
+fn place(view: &View, fit: &Fit, position: Vec3) -> (Vec3, f32) {
+    let axis = |axis: [f32; 3]| (position - Vec3::from(view.center)).dot(Vec3::from(axis));
+    let p = Vec3::new(axis(view.right), axis(view.up), axis(view.forward));
+    let t = [0, 1].map(|i| fit.focal[i] * p[i] / p.z + fit.center[i]);
+    (Vec3::new(t[0], t[1], 0.0), fit.near / p.z)
+}
+
+/// A square plate over a floor.
+fn plate_under(light: halfshade::scene::AreaLight, settings: Settings) -> Shot {
+    let scene = Triangles::new()
+        .floor([-2.0, 2.0], [-2.0, 2.0])
+        .plate(1.0, &rectangle([-0.5, 0.4], [-0.45, 0.6]))
+        .build();
+    let eye = DVec3::new(-3.0, 2.5, 0.4);
+    shot(scene, camera(eye, DVec3::ZERO, 42.0), light, 64, settings)
+}
+
+/// As a light shrinks, all techniques become the hard shadow: wherever the samples round a pixel's projection agree
+/// about it, its visibility is exactly theirs.
+#[test]
+fn tiny_lights_cast_hard_shadows() {
+    let center = DVec3::new(0.1, 3.0, -0.05);
+    let lights = [
+        rectangle_light(center, DVec2::splat(1e-4)),
+        disc_light(center, 1e-4),
+    ];
+    with_gpu(|gpu| {
+        for light in lights {
+            for (name, settings) in siblings() {
+                let settings = Settings {
+                    split: 1,
+                    ..settings
+                };
+                let reference = plate_under(
+                    light.clone(),
+                    Settings {
+                        technique: Technique::Hard,
+                        percentage_closer: false,
+                        ..settings.clone()
+                    },
+                );
+                let mut hard = renderer(gpu, &reference);
+                hard.render().expect("a frame");
+                let side = settings.map as usize;
+                let map: Vec<f32> = hard.read_image("shadow_map", side * side).expect("a map");
+                let view = hard.plan().views().next().expect("a view").view;
+                let fit = hard.fits().expect("fits")[0];
+                let positions = support::positions(&hard, &reference);
+                let visibility = support::visibility(gpu, &plate_under(light.clone(), settings));
+                let mut decided = 0;
+                for (&value, position) in visibility.iter().zip(&positions) {
+                    let [x, y, z, surface] = *position;
+                    if surface == 0.0 || y > 1e-3 {
+                        continue;
+                    }
+                    let (t, d) = place(&view, &fit, Vec3::new(x, y, z));
+                    let (column, row) = (t.x.floor() as i32, t.y.floor() as i32);
+                    let occludes = |i: i32, j: i32| {
+                        let inside = (0..side as i32).contains(&i) && (0..side as i32).contains(&j);
+                        // The plate and the floor are far apart: no bias matters.
+                        inside && map[j as usize * side + i as usize] > 1.05 * d
+                    };
+                    let near = (-1..=2).flat_map(|j| (-1..=2).map(move |i| (column + i, row + j)));
+                    let covered = near.filter(|&(i, j)| occludes(i, j)).count();
+                    if covered == 0 || covered == 16 {
+                        let expected = if covered == 0 { 1.0 } else { 0.0 };
+                        // The areas of patches that fill the light add up to it but for their rounding.
+                        assert!(
+                            (value - expected).abs() < 1e-5,
+                            "{name}: {value} at {position:?}"
+                        );
+                        decided += 1;
+                    }
+                }
+                assert!(decided > 1000, "{name}: only {decided} pixels");
+            }
+        }
+    });
+}
+
+/// Every technique is a function of the shot, bit for bit, and within its range on every scene.
+#[test]
+fn the_same_shot_has_the_same_image() {
+    with_gpu(|gpu| {
+        for (name, settings) in siblings() {
+            let shot = load("staircase", 32, settings);
+            let (first, second) = (
+                support::visibility(gpu, &shot),
+                support::visibility(gpu, &shot),
+            );
+            assert!(support::same_bits(&first, &second), "{name}");
+        }
+    });
+}
