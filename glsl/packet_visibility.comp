@@ -213,12 +213,13 @@ uint collect(View view, Packet packet, inout Cursor cursor, inout Edge batch[BAT
 void integrate(View view, Edge batch[BATCH], uint count) {
     for (uint slot = 0u; slot < held_end && count > 0u; ++slot) {
         Receiver receiver = receiver_of(slot);
-        float sum = 0.0;
+        // One by one, so that the sum does not depend on where batches and rounds end.
+        float sum = beyond[slot];
         [[unroll]] for (uint i = 0u; i < BATCH; ++i) {
             float share = edge_beyond(view, receiver, batch[i]);
             sum += i < count ? share : 0.0;
         }
-        beyond[slot] += sum;
+        beyond[slot] = sum;
     }
     steps += HELD + 1u;
 }

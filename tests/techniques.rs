@@ -178,3 +178,29 @@ fn the_same_shot_has_the_same_image() {
         }
     });
 }
+
+/// A pyramid finds the same patches as a scan of all texels; only the order of their sum differs, some thousand terms
+/// in f32.
+#[test]
+fn hierarchical_micropatches_are_micropatches() {
+    with_gpu(|gpu| {
+        for scene in ["staircase", "knot", "colonnade"] {
+            for gap_filling in [true, false] {
+                let image = |technique| {
+                    let settings = Settings {
+                        gap_filling,
+                        map: 128,
+                        ..Settings::usual(technique)
+                    };
+                    support::visibility(gpu, &load(scene, 32, settings))
+                };
+                let (flat, tree) = (
+                    image(Technique::Micropatch),
+                    image(Technique::MicropatchHierarchical),
+                );
+                let difference = support::largest_difference(&flat, &tree);
+                assert!(difference < 1e-4, "{scene}: {difference}");
+            }
+        }
+    });
+}

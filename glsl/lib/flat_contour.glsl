@@ -1,42 +1,35 @@
 // The contour in every dual cell of a kernel [GBP07, as re-implemented in Yang09 §6]. Needs `listed.glsl` and
 // `radial.glsl`.
 
-// Goes on to the next cell with a contour; `found` is that cell.
-void next_contour(Listed listed, uint layer, inout Scan scan, out ivec2 found, out vec4 depths, out uint mask) {
-    found = scan.at;
-    depths = vec4(0.0);
-    mask = 0u;
+// Goes on to the next cell with a contour and stays there; returns its mask, or 0 when there is none left.
+uint find_contour(Listed listed, uint layer, inout Scan scan) {
+    uint mask = 0u;
     uint turns = 0u;
     while (segment_count(mask) == 0u && !at_end(scan) && !out_of_turns(turns)) {
         ++turns;
-        found = scan.at;
-        depths = depths_of(layer, found);
-        mask = mask_of(depths, listed.receiver.biased);
-        advance(scan);
+        mask = mask_of(depths_of(layer, scan.at), listed.receiver.biased);
+        if (segment_count(mask) == 0u) advance(scan);
     }
     nodes_visited += turns;
     samples_read += 4u * turns;
     steps += subgroupMax(turns) + 1u;
+    return mask;
 }
 
-// Sum of what lies beyond the edges of a layer. The loops are nested so that invocations side by side integrate
-// together and look for contours together; the rare second segment of a cell is a turn of its own.
-float sum_beyond(Listed listed, uint layer, inout Scan scan) {
-    ivec2 found = scan.at;
-    vec4 depths = vec4(0.0);
-    uint mask = 0u;
+// Adds up what lies beyond the edges of a layer, times `sign`. The loops are nested so that invocations side by side
+// integrate together and look for contours together; the rare second segment of a cell is a turn of its own.
+void add_beyond(Listed listed, uint layer, inout Scan scan, float sign, inout float sum) {
     uint segment = 0u;
-    bool more = false;
-    float beyond = 0.0;
-    while (more || !(at_end(scan) || out_of_turns(0u))) {
+    while (segment > 0u || !(at_end(scan) || out_of_turns(0u))) {
         ++steps;
-        segment = more ? segment + 1u : 0u;
-        if (!more) next_contour(listed, layer, scan, found, depths, mask);
-        beyond += segment_beyond(listed.view, listed.receiver, found, depths, mask, segment);
+        uint mask = find_contour(listed, layer, scan);
+        vec4 depths = depths_of(layer, scan.at);
+        sum += sign * segment_beyond(listed.view, listed.receiver, scan.at, depths, mask, segment);
         edges_extracted += uint(segment < segment_count(mask));
-        more = segment + 1u < segment_count(mask);
+        bool more = segment + 1u < segment_count(mask);
+        segment = more ? 1u : 0u;
+        if (!more && segment_count(mask) > 0u) advance(scan);
     }
-    return beyond;
 }
 
 // The sub-light's area if its centre is hidden, asked of the contour itself (trap 1), or 0.

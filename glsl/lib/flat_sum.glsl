@@ -1,8 +1,9 @@
 // A sum over all places of a kernel, in all layers of the shadow map. Needs `listed.glsl` and the binding `partial`;
-// the technique defines `sum_over`.
+// the technique defines `add_up`.
 
-// Sum over a layer from `scan` on, to its end or as far as the driver lets loops run.
-float sum_over(Listed listed, uint layer, inout Scan scan);
+// Adds up over a layer from `scan` on, to its end or as far as the driver lets loops run: one by one, so that the sum
+// does not depend on where rounds end.
+void add_up(Listed listed, uint layer, inout Scan scan, inout float sum);
 
 // False: `sum` is not complete yet, another round goes on.
 bool sum_kernel(Listed listed, ivec2 first, ivec2 last, out float sum) {
@@ -11,7 +12,7 @@ bool sum_kernel(Listed listed, ivec2 first, ivec2 last, out float sum) {
     Scan scan = scan_at(first, last, next_number(listed), layer);
     while (layer < LAYERS && !out_of_turns(0u)) {
         ++steps;
-        sum += sum_over(listed, layer, scan);
+        add_up(listed, layer, scan, sum);
         bool through = at_end(scan);
         layer += uint(through);
         scan.at = through ? scan.first : scan.at;

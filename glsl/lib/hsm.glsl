@@ -13,6 +13,7 @@ int hsm_row(int level, uint map_size) { return (1 << int(hsm_levels(map_size))) 
 // Depth bounds of the node of `level` that holds `texel`; empty beyond the map.
 vec2 hsm_fetch(texture2DArray hsm, ivec2 texel, int level, uint map_size) {
     ivec2 node = texel >> level;
-    if (any(greaterThanEqual(node, ivec2(hsm_side(level, map_size))))) return vec2(0.0);
-    return texelFetch(hsm, ivec3(node.x, node.y + hsm_row(level, map_size), 0), 0).xy;
+    ivec2 held = min(node, ivec2(hsm_side(level, map_size) - 1));
+    vec2 bounds = texelFetch(hsm, ivec3(held.x, held.y + hsm_row(level, map_size), 0), 0).xy;
+    return node == held ? bounds : vec2(0.0);
 }

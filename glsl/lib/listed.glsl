@@ -44,7 +44,8 @@ vec4 depths_of(uint layer, ivec2 cell) {
                 depth_at(layer, cell + ivec2(0, 1)));
 }
 
-// A scan of a rectangle of cells or texels, row by row.
+// A scan of a rectangle of cells or texels, row by row. A search stays at what it has found, and whoever has seen to
+// that goes on: lavapipe loses what lanes put by in a loop that others have not left yet.
 struct Scan {
     ivec2 first;
     ivec2 last;

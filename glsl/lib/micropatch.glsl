@@ -1,12 +1,14 @@
 // Micropatches: each occluding texel of the shadow map is a rectangle parallel to the map at the texel's depth,
 // and their back-projections' areas add up [AHL06, GBP06]. Needs `listed.glsl` and `radial.glsl`.
 
-// [half sizes²] The sub-light's area inside a box.
+// [half sizes²] The sub-light's area inside a box, for a sub-light that is one.
+float area_of_boxes(View view, vec2 lower, vec2 upper) {
+    vec2 size = max(min(upper, view.extent.zw) - max(lower, view.extent.xy), vec2(0.0));
+    return size.x * size.y;
+}
+
+// [half sizes²] The sub-light's area inside a box, for any sub-light.
 float area_in_box(View view, vec2 lower, vec2 upper) {
-    if (!ROUND) {
-        vec2 size = max(min(upper, view.extent.zw) - max(lower, view.extent.xy), vec2(0.0));
-        return size.x * size.y;
-    }
     vec3 corners[4] = vec3[4](vec3(lower, 1.0), vec3(upper.x, lower.y, 1.0), vec3(upper, 1.0),
                               vec3(lower.x, upper.y, 1.0));
     // The centre is left of a side when it is on the box's side of it.
@@ -37,59 +39,60 @@ float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
     vec2 lower = vec2(texel) - 0.5 - receiver.t;
     vec2 upper = lower + 1.0;
     vec2 neighbours = GAP_FILLING ? depths.yz : depths.xx;
-    if (!OBLIQUE) {
+    float area = 0.0;
+    if (OBLIQUE) {
+        vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
+                          lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
+        float corner = outer.x == depths.x ? outer.y : outer.x;
+        area = area_in_quadrangle(view, receiver, lower, upper, vec4(corner, outer.y, depths.x, outer.x));
+    } else {
         vec2 scale = vec2(receiver.ku.x, receiver.kv.y);
-        vec2 own = scale * lower / (depths.x - receiver.d);
-        vec2 reached = scale * lower / (neighbours - receiver.d);
-        return area_in_box(view, min(own, reached), scale * upper / (depths.x - receiver.d));
+        vec2 reached = min(scale * lower / (depths.x - receiver.d), scale * lower / (neighbours - receiver.d));
+        vec2 far = scale * upper / (depths.x - receiver.d);
+        if (ROUND) area = area_in_box(view, reached, far);
+        else area = area_of_boxes(view, reached, far);
     }
-    vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
-                      lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
-    float corner = outer.x == depths.x ? outer.y : outer.x;
-    return area_in_quadrangle(view, receiver, lower, upper, vec4(corner, outer.y, depths.x, outer.x));
+    return area;
 }
 
 // `depth` if it belongs to an occluder, or else `own`.
 float occluder_or(Receiver receiver, float depth, float own) { return depth > receiver.biased ? depth : own; }
 
-// As `patch_area`, with the neighbours' depths read from the map.
+// As `patch_area`, with the neighbours' depths read from the map; 0 where `depth` is, which stands for no patch.
 float patch_area_at(Listed listed, uint layer, ivec2 texel, float depth) {
     vec3 depths = vec3(depth);
     if (GAP_FILLING) {
         depths.y = occluder_or(listed.receiver, depth_at(layer, max(texel - ivec2(1, 0), ivec2(0))), depth);
         depths.z = occluder_or(listed.receiver, depth_at(layer, max(texel - ivec2(0, 1), ivec2(0))), depth);
-        samples_read += 2u;
+        samples_read += depth > 0.0 ? 2u : 0u;
     }
-    ++edges_extracted;
-    return patch_area(listed.view, listed.receiver, texel, depths);
+    edges_extracted += uint(depth > 0.0);
+    float area = patch_area(listed.view, listed.receiver, texel, depths);
+    return depth > 0.0 ? area : 0.0;
 }
 
-// Goes on to the next occluding texel; `depth` is its depth, or 0 when there is none left.
-void next_patch(Listed listed, uint layer, inout Scan scan, out ivec2 texel, out float depth) {
-    texel = scan.at;
-    depth = 0.0;
+// Goes on to the next occluding texel and stays there; returns its depth, or 0 when there is none left.
+float find_patch(Listed listed, uint layer, inout Scan scan) {
+    float depth = 0.0;
     uint turns = 0u;
     while (depth == 0.0 && !at_end(scan) && !out_of_turns(turns)) {
         ++turns;
-        texel = scan.at;
-        depth = occluder_or(listed.receiver, depth_at(layer, texel), 0.0);
-        advance(scan);
+        depth = occluder_or(listed.receiver, depth_at(layer, scan.at), 0.0);
+        if (depth == 0.0) advance(scan);
     }
     nodes_visited += turns;
     samples_read += turns;
     steps += subgroupMax(turns) + 1u;
+    return depth;
 }
 
-// Sum of the areas of a layer's patches. The loops are nested so that invocations side by side look for occluders
+// Adds the areas of a layer's patches up. The loops are nested so that invocations side by side look for occluders
 // together and add up together.
-float sum_patches(Listed listed, uint layer, inout Scan scan) {
-    float sum = 0.0;
+void add_patches(Listed listed, uint layer, inout Scan scan, inout float sum) {
     while (!at_end(scan) && !out_of_turns(0u)) {
         ++steps;
-        ivec2 texel;
-        float depth;
-        next_patch(listed, layer, scan, texel, depth);
-        if (depth > 0.0) sum += patch_area_at(listed, layer, texel, depth);
+        float depth = find_patch(listed, layer, scan);
+        sum += patch_area_at(listed, layer, scan.at, depth);
+        if (depth > 0.0) advance(scan);
     }
-    return sum;
 }

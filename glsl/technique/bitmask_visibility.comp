@@ -60,10 +60,10 @@ bool in_triangle(vec2 q, vec2 a, vec2 b, vec2 c) {
     return all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
 }
 
-// Sets the bits of the samples in the microquad over a cell. `false`: the cell is none.
-void cover(Listed listed, ivec2 cell, vec4 depths) {
+// Sets the bits of the samples in the microquad over a cell, if there is one.
+void cover(Listed listed, ivec2 cell, vec4 depths, bool exists) {
     vec2 corner[4];
-    bool ahead = true;
+    bool ahead = exists;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         vec2 at = vec2(cell) + vec2(i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0);
         vec3 q = back_project(listed.receiver, at - listed.receiver.t, depths[i]);
@@ -90,18 +90,14 @@ void cover(Listed listed, ivec2 cell, vec4 depths) {
     steps += subgroupMax(turns) + 1u;
 }
 
-// Goes on to the next microquad; false: there is none left.
-bool next_quad(Listed listed, uint layer, inout Scan scan, out ivec2 cell, out vec4 depths) {
-    cell = scan.at;
-    depths = vec4(0.0);
+// Goes on to the next microquad and stays there; false: there is none left.
+bool find_quad(Listed listed, uint layer, inout Scan scan) {
     bool found = false;
     uint turns = 0u;
     while (!found && !at_end(scan) && !out_of_turns(turns)) {
         ++turns;
-        cell = scan.at;
-        depths = depths_of(layer, cell);
-        found = mask_of(depths, listed.receiver.biased) == 15u;
-        advance(scan);
+        found = mask_of(depths_of(layer, scan.at), listed.receiver.biased) == 15u;
+        if (!found) advance(scan);
     }
     nodes_visited += turns;
     samples_read += 4u * turns;
@@ -114,9 +110,9 @@ bool next_quad(Listed listed, uint layer, inout Scan scan, out ivec2 cell, out v
 void cover_layer(Listed listed, uint layer, inout Scan scan) {
     while (!at_end(scan) && !out_of_turns(0u)) {
         ++steps;
-        ivec2 cell;
-        vec4 depths;
-        if (next_quad(listed, layer, scan, cell, depths)) cover(listed, cell, depths);
+        bool found = find_quad(listed, layer, scan);
+        cover(listed, scan.at, depths_of(layer, scan.at), found);
+        if (found) advance(scan);
     }
 }
 

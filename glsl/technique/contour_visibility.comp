@@ -32,7 +32,7 @@ layout(binding = 14, scalar) buffer ProgressBlock { Progress progress[]; };
 #include "flat_contour.glsl"
 #include "flat_sum.glsl"
 
-float sum_over(Listed listed, uint layer, inout Scan scan) { return sum_beyond(listed, layer, scan); }
+void add_up(Listed listed, uint layer, inout Scan scan, inout float sum) { add_beyond(listed, layer, scan, 1.0, sum); }
 
 void main() {
     Listed listed;

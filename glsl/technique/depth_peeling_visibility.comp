@@ -33,8 +33,9 @@ layout(binding = 14, scalar) buffer ProgressBlock { Progress progress[]; };
 #include "micropatch.glsl"
 #include "flat_sum.glsl"
 
-float sum_over(Listed listed, uint layer, inout Scan scan) {
-    return CONTOURS ? -sum_beyond(listed, layer, scan) : sum_patches(listed, layer, scan);
+void add_up(Listed listed, uint layer, inout Scan scan, inout float sum) {
+    if (CONTOURS) add_beyond(listed, layer, scan, -1.0, sum);
+    else add_patches(listed, layer, scan, sum);
 }
 
 void main() {

@@ -35,27 +35,29 @@ layout(binding = 15) uniform texture2DArray hsm;
 #include "listed.glsl"
 #include "micropatch.glsl"
 
-// Walks to the next occluding texel and past it; `depth` is 0 when there is none left.
-void next_leaf(Listed listed, ivec2 first, ivec2 last, inout Walk walk, out ivec2 texel, out float depth) {
-    ivec2 corner = (first >> walk.top) << walk.top;
-    texel = walk.node;
-    depth = 0.0;
+// Where the pyramid's node of level `top` that holds a texel begins.
+ivec2 corner_of(ivec2 texel, int top) { return (texel >> top) << top; }
+
+// Walks to the next occluding texel and stays there; returns its depth, or 0 when there is none left.
+float find_leaf(Listed listed, ivec2 first, ivec2 last, inout Walk walk) {
+    float depth = 0.0;
     uint turns = 0u;
     while (depth == 0.0 && !walk.ended && !out_of_turns(turns)) {
         ++turns;
-        texel = walk.node;
         // Nodes stand where the pyramid has them, not where the kernel begins: some hang over.
-        bool inside = all(lessThanEqual(texel, last)) && all(greaterThanEqual(texel + (1 << walk.level) - 1, first));
-        float nearest = walk.level > 0 ? hsm_fetch(hsm, texel, walk.level, listed.view.map_size).y
-                                       : texelFetch(shadow_map, texel, 0).x;
+        bool inside = all(lessThanEqual(walk.node, last))
+                   && all(greaterThanEqual(walk.node + (1 << walk.level) - 1, first));
+        float nearest = walk.level > 0 ? hsm_fetch(hsm, walk.node, walk.level, listed.view.map_size).y
+                                       : texelFetch(shadow_map, walk.node, 0).x;
         bool open = inside && nearest > listed.receiver.biased;
         nodes_visited += uint(inside);
         samples_read += uint(inside);
         depth = open && walk.level == 0 ? nearest : 0.0;
         if (open && walk.level > 0) descend(walk);
-        else pass_by(walk, corner, last);
+        else if (depth == 0.0) pass_by(walk, corner_of(first, walk.top), last);
     }
     steps += subgroupMax(turns) + 1u;
+    return depth;
 }
 
 void main() {
@@ -66,15 +68,14 @@ void main() {
     ivec2 last = listed.last + 1;
     ivec2 side = last - first + 1;
     int top = min(level_covering(max(side.x, side.y)), int(hsm_levels(listed.view.map_size)));
-    Walk walk = walk_from((first >> top) << top, top);
+    Walk walk = walk_from(corner_of(first, top), top);
     if (!is_first_round()) walk = walk_on(progress[listed.entry], top);
     float hidden = is_first_round() ? 0.0 : partial[listed.index];
     while (!walk.ended && !out_of_turns(0u)) {
         ++steps;
-        ivec2 texel;
-        float depth;
-        next_leaf(listed, first, last, walk, texel, depth);
-        if (depth > 0.0) hidden += patch_area_at(listed, 0u, texel, depth);
+        float depth = find_leaf(listed, first, last, walk);
+        hidden += patch_area_at(listed, 0u, walk.node, depth);
+        if (depth > 0.0) pass_by(walk, corner_of(first, top), last);
     }
     if (close_round(listed, !walk.ended, progress_of(walk))) conclude(listed, hidden / listed.view.area);
     else partial[listed.index] = hidden;

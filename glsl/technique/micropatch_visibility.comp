@@ -31,7 +31,7 @@ layout(binding = 14, scalar) buffer ProgressBlock { Progress progress[]; };
 #include "micropatch.glsl"
 #include "flat_sum.glsl"
 
-float sum_over(Listed listed, uint layer, inout Scan scan) { return sum_patches(listed, layer, scan); }
+void add_up(Listed listed, uint layer, inout Scan scan, inout float sum) { add_patches(listed, layer, scan, sum); }
 
 void main() {
     Listed listed;

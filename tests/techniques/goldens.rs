@@ -21,7 +21,7 @@ fn path(scene: &str) -> PathBuf {
 /// Means over the blocks, row by row; pixels without a surface count as lit.
 fn block_means(visibility: &[f32]) -> Vec<f32> {
     let block = SIDE / BLOCKS;
-    let mut sums = vec![0.0; BLOCKS * BLOCKS];
+    let mut sums = [0.0; BLOCKS * BLOCKS];
     for (index, value) in visibility.iter().enumerate() {
         let (x, y) = (index % SIDE / block, index / SIDE / block);
         sums[y * BLOCKS + x] += if value.is_nan() { 1.0 } else { *value };
