@@ -71,7 +71,7 @@ bool is_coherent(Survey survey) {
                   - max(survey.packet.depth_min, survey.kernel_depths.x);
     float null = clamp(overlap / max(survey.kernel_depths.y - survey.kernel_depths.x, 1e-30), 0.0, 1.0);
     float divergence = 1.0 - pow(1.0 - null, width * width);
-    if (REPROCESS && divergence > DIVERGENCE_MAX) return false;
+    if (divergence > DIVERGENCE_MAX) return false;
     precise float packet_cost = node_cost(width) + (costs.edge + costs.visibility * float(survey.count)) * width;
     return packet_cost <= survey.pixel_cost;
 }

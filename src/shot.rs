@@ -151,7 +151,7 @@ impl Default for Settings {
             filter_samples: 32,
             percentage_closer: false,
             maps: 1024,
-            bias: 1.5,
+            bias: 1.0,
             counters: false,
         }
     }

@@ -103,7 +103,6 @@ fn packets_of(shot: &Shot, kernels: &[Kernel]) -> BTreeMap<u32, Vec<u32>> {
 /// The device's lists are what the twin decides; returns how many packets the twin leaves undecided, of
 /// how many.
 fn check_lists(shot: &Shot, traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> [usize; 2] {
-    let reprocess = shot.settings.leaf == Leaf::Reprocess;
     let pixelwise = shot.settings.packet == (1, 1);
     let packets = packets_of(shot, kernels);
     let mut coherent: BTreeMap<u32, _> = BTreeMap::new();
@@ -122,7 +121,7 @@ fn check_lists(shot: &Shot, traces: &Traces, seen: &[Seen], kernels: &[Kernel]) 
             .filter_map(|&i| seen[i as usize].map(|receiver| (kernels[i as usize], receiver)))
             .collect();
         let Classified { packet, decision } =
-            classify(index, &surveyed, &DEFAULT_COSTS, reprocess).expect("it has pixels");
+            classify(index, &surveyed, &DEFAULT_COSTS).expect("it has pixels");
         undecided += usize::from(decision == Decision::Either && !pixelwise);
         let single = members.iter().filter(|&i| pixels.remove(i)).count();
         match coherent.remove(&index) {

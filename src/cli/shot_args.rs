@@ -36,7 +36,7 @@ pub struct ShotArgs {
     #[arg(long, value_name = "R", default_value_t = 512)]
     map: u32,
     /// Depth bias in texels of the receiver's slope, 0 or more
-    #[arg(long, value_name = "TEXELS", default_value_t = 1.5)]
+    #[arg(long, value_name = "TEXELS", default_value_t = 1.0)]
     bias: f32,
     /// Visit nodes whose back-projection misses the light as well, as the paper does
     #[arg(long)]

@@ -41,12 +41,11 @@ struct Survey {
 
 /// Surveys a packet's penumbra pixels, in the order of the packet's rows. None: it has none.
 ///
-/// `index`: its position in the grid of packets; `reprocess`: the leaf rule.
+/// `index`: its position in the grid of packets.
 pub fn classify(
     index: u32,
     pixels: &[(Kernel, Receiver)],
     costs: &Costs,
-    reprocess: bool,
 ) -> Option<Classified> {
     let mut packet = Packet {
         index,
@@ -77,7 +76,7 @@ pub fn classify(
     packet.first = cell(survey.first);
     packet.last = cell(survey.last);
     packet.centers = Vec4::new(lower.x, lower.y, upper.x, upper.y).into();
-    let decision = survey.decide(&packet, costs, reprocess);
+    let decision = survey.decide(&packet, costs);
     Some(Classified { packet, decision })
 }
 
@@ -101,7 +100,7 @@ impl Survey {
         self.count += 1;
     }
 
-    fn decide(&self, packet: &Packet, costs: &Costs, reprocess: bool) -> Decision {
+    fn decide(&self, packet: &Packet, costs: &Costs) -> Decision {
         let width = width_of(self.first, self.last);
         let [near_end, far_end] = [self.kernel_depths[1], self.kernel_depths[0]];
         let overlap = packet.depth_max.min(near_end) - packet.depth_min.max(far_end);
@@ -110,11 +109,7 @@ impl Survey {
         let divergence = 1.0 - (1.0 - null).powf(width * width);
         // Eq. 6.
         let shared = node_cost(width) + (costs.edge + costs.visibility * self.count as f32) * width;
-        let diverges = if reprocess {
-            exceeds(divergence, DIVERGENCE_MAX)
-        } else {
-            Some(false)
-        };
+        let diverges = exceeds(divergence, DIVERGENCE_MAX);
         // A single pixel costs the same either way, to the bit: both sides are one expression.
         let costs_more = if self.count == 1 {
             Some(false)
