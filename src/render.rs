@@ -308,7 +308,16 @@ impl Renderer {
     }
 
     /// A light's visibility, row by row from the top: 0 umbra … 1 lit, NaN where there is no surface.
+    ///
+    /// # Errors
+    /// There is no such light, or a Vulkan call failed.
     pub fn visibility(&self, light: usize) -> Result<Vec<f32>> {
+        let count = self.fresh.lights.len();
+        if light >= count {
+            return Err(Error::Invalid(format!(
+                "there is no light {light}; the shot has {count}"
+            )));
+        }
         let pixels = self.pixel_count();
         let all = self.read_buffer("visibility", pixels * self.fresh.lights.len())?;
         Ok(all[light * pixels..(light + 1) * pixels].to_vec())

@@ -131,15 +131,15 @@ fn settings_change_what_runs() {
     check("plate-split-1", &one_view, EVERYTHING, false);
     let pixels = with(plate(), |settings| settings.packet = (1, 1));
     check("plate-packet-1x1", &pixels, EVERYTHING, false);
-    let hard = with(plate(), |settings| settings.technique = Technique::Hard);
-    check("plate-hard", &hard, EVERYTHING, false);
-    let flat = |settings: &mut Settings| settings.technique = Technique::PixelContour;
-    check(
-        "plate-pixel-contour",
-        &with(plate(), flat),
-        EVERYTHING,
-        false,
-    );
+}
+
+#[test]
+fn every_technique_at_its_usual_settings() {
+    for &technique in Technique::ALL {
+        let usual = Settings::usual(technique);
+        let shot = with(scene("plate"), |settings| *settings = usual);
+        check(&format!("plate-{technique}"), &shot, EVERYTHING, false);
+    }
 }
 
 #[test]

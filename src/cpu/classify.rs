@@ -42,11 +42,7 @@ struct Survey {
 /// Surveys a packet's penumbra pixels, in the order of the packet's rows. None: it has none.
 ///
 /// `index`: its position in the grid of packets.
-pub fn classify(
-    index: u32,
-    pixels: &[(Kernel, Receiver)],
-    costs: &Costs,
-) -> Option<Classified> {
+pub fn classify(index: u32, pixels: &[(Kernel, Receiver)], costs: &Costs) -> Option<Classified> {
     let mut packet = Packet {
         index,
         depth_min: 1e30,

@@ -1,7 +1,7 @@
 //! What a plan leaves out, and why.
 
 use super::{Omission, Outcome, Plan};
-use crate::shot::Shot;
+use crate::shot::{Shot, Technique};
 use crate::technique::Work;
 
 impl Plan {
@@ -85,7 +85,17 @@ impl Plan {
                 "the disc's rim leaves nothing of them",
             );
         }
-        if recipe.has(Work::PixelList) && !recipe.has(Work::PacketList) {
+        if !recipe.mssm && !shot.lights[index].is_point() {
+            self.omit(
+                format!("{name}: mssm, kernels, lists"),
+                format!(
+                    "{} tests single samples of the maps",
+                    shot.settings.technique
+                ),
+            );
+        }
+        let packets = shot.settings.technique == Technique::PacketContour;
+        if packets && !recipe.has(Work::PacketList) && recipe.has(Work::PixelList) {
             self.omit(
                 format!("{name}: packet_visibility"),
                 "a packet is a single pixel",

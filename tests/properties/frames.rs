@@ -1,0 +1,230 @@
+//! Frames: what they repeat, keep, record and take.
+
+use super::*;
+
+/// Lists fill in any order; the picture does not tell.
+#[test]
+fn the_same_shot_has_the_same_bits() {
+    let shots: Vec<Shot> = ["staircase", "knot"]
+        .map(|name| load(name, 64, settings(128, 2)))
+        .to_vec();
+    let first = with_gpu(|gpu| {
+        shots
+            .iter()
+            .map(|shot| {
+                let image = visibility(gpu, shot);
+                assert!(same_bits(&image, &visibility(gpu, shot)), "on one device");
+                image
+            })
+            .collect::<Vec<_>>()
+    });
+    let second = with_gpu(|gpu| {
+        shots
+            .iter()
+            .map(|shot| visibility(gpu, shot))
+            .collect::<Vec<_>>()
+    });
+    for (first, second) in first.iter().zip(&second) {
+        assert!(same_bits(first, second), "on two devices");
+    }
+}
+
+#[test]
+fn a_retained_frame_has_the_same_bits_and_draws_no_map() {
+    let shot = load("knot", 64, settings(128, 1));
+    with_gpu(|gpu| {
+        let mut renderer = renderer(gpu, &shot);
+        let frame = renderer.render().expect("a frame");
+        assert!(!frame.plan.is_retained());
+        let first = renderer.visibility(0).expect("visibility");
+        assert!(renderer.recorded().iter().any(|name| name == "shadow_map"));
+
+        let frame = renderer.render().expect("a frame");
+        assert!(frame.plan.is_retained());
+        assert!(same_bits(
+            &first,
+            &renderer.visibility(0).expect("visibility")
+        ));
+        let of_map = [
+            "clear_fits",
+            "receivers",
+            "casters",
+            "fit",
+            "shadow_map",
+            "mssm",
+        ];
+        for name in renderer.recorded() {
+            assert!(!of_map.contains(&name.as_str()), "{name} ran");
+        }
+
+        renderer.invalidate();
+        let frame = renderer.render().expect("a frame");
+        assert!(!frame.plan.is_retained());
+        assert!(same_bits(
+            &first,
+            &renderer.visibility(0).expect("visibility")
+        ));
+    });
+}
+
+#[test]
+fn what_is_recorded_is_what_was_planned() {
+    with_gpu(|gpu| {
+        for (name, technique) in SCENES.iter().flat_map(|name| {
+            [
+                Technique::PacketContour,
+                Technique::PixelContour,
+                Technique::Hard,
+            ]
+            .map(|t| (name, t))
+        }) {
+            let settings = Settings {
+                technique,
+                ..settings(64, 1 + u32::from(*name == "knot"))
+            };
+            let shot = load(name, 16, settings);
+            let mut renderer = renderer(gpu, &shot);
+            for _ in 0..2 {
+                let frame = renderer.render().expect("a frame");
+                let mut recorded: Vec<(&str, u32)> = Vec::new();
+                for pass in renderer.recorded() {
+                    match recorded.iter_mut().find(|(known, _)| known == pass) {
+                        Some((_, count)) => *count += 1,
+                        None => recorded.push((pass, 1)),
+                    }
+                }
+                assert_eq!(recorded, frame.plan.passes, "{name}, {technique:?}");
+            }
+        }
+    });
+}
+
+/// A wall far to the side shadows a floor that the light sees at more than 60° off its axis.
+#[test]
+fn receivers_beside_the_front_face_are_shadowed() {
+    let wall =
+        [(0.2, -0.7), (0.6, -0.7), (0.6, 0.7), (0.2, 0.7)].map(|(y, z)| DVec3::new(4.0, y, z));
+    let scene = Triangles::new()
+        .floor([-1.0, 9.0], [-3.0, 3.0])
+        .polygon(&wall)
+        .build();
+    let camera = camera(DVec3::new(4.0, 4.0, 4.0), DVec3::new(5.2, 0.0, 0.0), 50.0);
+    let center = DVec3::new(0.0, 1.0, 0.0);
+    let lights = [
+        rectangle_light(center, DVec2::new(0.2, 0.3)),
+        disc_light(center, 0.25),
+    ];
+    with_gpu(|gpu| {
+        for (light, split) in lights.iter().flat_map(|light| [(light, 1), (light, 3)]) {
+            let shot = shot(
+                scene.clone(),
+                camera.clone(),
+                light.clone(),
+                64,
+                settings(256, split),
+            );
+            let faces: Vec<u32> = planned(gpu, &shot).views().map(|v| v.view.face).collect();
+            assert!(faces.iter().any(|&face| face != 0), "no side faces");
+            let image = visibility(gpu, &shot);
+            let truth = traced(&shot, 256);
+            let mut errors = Vec::new();
+            let (mut beside, mut dark) = (0, 0);
+            for (index, (&value, &truth)) in image.iter().zip(&truth).enumerate() {
+                assert_eq!(value.is_nan(), truth.is_nan(), "pixel {index}");
+                if truth < 1.0 {
+                    errors.push((value - truth).abs());
+                    beside += 1;
+                }
+                if truth == 0.0 {
+                    dark += 1;
+                    assert!(value < 0.25, "pixel {index} is lit: {value}");
+                }
+            }
+            let mean = errors.iter().sum::<f32>() / errors.len() as f32;
+            println!(
+                "split {split}: mean error {mean:.1e} over {beside} pixels, {dark} of them dark"
+            );
+            assert!(
+                beside > 200 && dark > 20,
+                "{beside} shadow pixels, {dark} dark"
+            );
+            // One flat occluder, so a single view sees all of its contour: what is left is the map's texel
+            // and the tracing's noise, about 1 / 256 each.
+            assert!(mean < 0.015, "split {split}: mean error {mean}");
+        }
+    });
+}
+
+fn traced(shot: &Shot, samples: u32) -> Vec<f32> {
+    use halfshade::cpu::reference::{ReferenceOptions, trace};
+    let options = ReferenceOptions { samples, seed: 1 };
+    let image = trace(shot, 0, options, &|_| (), &Default::default());
+    image.expect("a reference").visibility.data
+}
+
+/// A light without extent asks for a hard shadow, whatever the technique.
+#[test]
+fn a_light_without_extent_casts_a_hard_shadow() {
+    let plate = Occluder::square(1.5, DVec2::new(0.1, -0.05), 0.45, 15.0);
+    let scene = Triangles::new()
+        .floor([-2.0, 2.0], [-2.0, 2.0])
+        .plate(plate.height, &plate.corners())
+        .build();
+    let camera = camera(DVec3::new(-3.0, 1.4, 0.4), DVec3::ZERO, 40.0);
+    with_gpu(|gpu| {
+        for light in [disc_light(LIGHT, 0.0), rectangle_light(LIGHT, DVec2::ZERO)] {
+            let shot = shot(scene.clone(), camera.clone(), light, 64, settings(256, 4));
+            let image = render(gpu, &shot);
+            for soft in [
+                "mssm",
+                "kernels",
+                "classify",
+                "packet_visibility",
+                "pixel_visibility",
+            ] {
+                let planned = image.plan.passes.iter().any(|(name, _)| *name == soft);
+                assert!(!planned, "{soft} is planned");
+            }
+            let (mut lit, mut hidden) = (0, 0);
+            let shift = 1.5 * texel(&image, LIGHT, plate.height);
+            for (&value, position) in image.visibility.iter().zip(&image.positions) {
+                let [x, y, z, surface] = position.map(f64::from);
+                if surface == 0.0 || y > 1e-3 {
+                    continue;
+                }
+                // A light of next to no size tells which side of the edge a point is on.
+                let point = DVec3::new(x, y, z);
+                let seen =
+                    |by| rectangle_visibility(point, LIGHT, DVec2::splat(1e-9), &plate.grown(by));
+                if seen(shift) > 0.5 {
+                    assert_eq!(value, 1.0, "at {point}");
+                    lit += 1;
+                } else if seen(-shift) < 0.5 {
+                    assert_eq!(value, 0.0, "at {point}");
+                    hidden += 1;
+                } else {
+                    assert!(value == 0.0 || value == 1.0, "{value} at {point}");
+                }
+            }
+            assert!(lit > 300 && hidden > 100, "{lit} lit, {hidden} hidden");
+        }
+    });
+}
+
+#[test]
+fn memory_does_not_depend_on_the_split() {
+    let per_view = ["views", "fits", "lists", "sectors"];
+    with_gpu(|gpu| {
+        for name in SCENES {
+            let bytes = [1, 2, 4, 8, 16].map(|split| {
+                let plan = planned(gpu, &load(name, 64, settings(256, split)));
+                let small = plan
+                    .resources
+                    .iter()
+                    .filter(|(name, _)| per_view.contains(name));
+                plan.memory_bytes() - small.map(|(_, bytes)| bytes).sum::<u64>()
+            });
+            assert!(bytes.iter().all(|&b| b == bytes[0]), "{name}: {bytes:?}");
+        }
+    });
+}
