@@ -33,7 +33,7 @@ TECHNIQUES = {
     "hard 3x3": ["--technique", "hard", "--percentage-closer"],
     "reference-maps 256": ["--technique", "reference-maps", "--maps", "256"],
 }
-COLUMNS = ["shot", "technique", "mae", "rmse", "bias", "p99", "visibility_ms", "min_ms", "max_ms", "samples_per_pixel", "note"]
+COLUMNS = ["shot", "technique", "mae", "rmse", "bias", "p99", "visibility_ms", "min_ms", "max_ms", "samples_per_pixel", "device", "note"]
 
 
 def run(command, seconds):
@@ -72,7 +72,8 @@ def measure(args, shot, flags, truth, scratch):
         "min_ms": f"{least:.1f}",
         "max_ms": f"{most:.1f}",
         "samples_per_pixel": f"{counters['samples_read'] / pixels:.1f}",
-    }, stats
+        "device": f"{stats['device']}, {stats['driver']}",
+    }
 
 
 def metrics_of(metrics):
@@ -84,8 +85,9 @@ def metrics_of(metrics):
     }
 
 
-def write_markdown(args, rows, device):
+def write_markdown(args, rows):
     """Tables by shot."""
+    device = next((row["device"] for row in rows if row["device"]), "unknown")
     lines = [
         "# Every technique on the same shots",
         "",
@@ -130,30 +132,35 @@ def main():
     args.output.mkdir(parents=True, exist_ok=True)
     table = args.output / "techniques.csv"
     rows = list(csv.DictReader(table.open())) if table.exists() else []
-    known = {(row["shot"], row["technique"]) for row in rows}
-    device = "unknown"
     with table.open("a", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS)
         if not rows:
             writer.writeheader()
-        for shot in args.shots:
-            truth = truth_of(args, shot)
-            for technique, flags in TECHNIQUES.items():
-                name = Path(shot).stem
-                if (name, technique) in known:
-                    continue
-                row = dict.fromkeys(COLUMNS, "") | {"shot": name, "technique": technique}
-                try:
-                    measured, stats = measure(args, shot, flags, truth, args.output / "truth")
-                    row |= measured
-                    device = f"{stats['device']}, {stats['driver']}"
-                except RuntimeError as error:
-                    row["note"] = str(error)
+        try:
+            for row in missing_rows(args, rows):
                 print(row, file=sys.stderr)
                 writer.writerow(row)
                 file.flush()
                 rows.append(row)
-    write_markdown(args, rows, device)
+        except KeyboardInterrupt:
+            print("interrupted; run again to go on", file=sys.stderr)
+    write_markdown(args, rows)
+
+
+def missing_rows(args, rows):
+    """Measures what the table lacks, row by row."""
+    known = {(row["shot"], row["technique"]) for row in rows}
+    for shot in args.shots:
+        truth = truth_of(args, shot)
+        for technique, flags in TECHNIQUES.items():
+            row = dict.fromkeys(COLUMNS, "") | {"shot": Path(shot).stem, "technique": technique}
+            if (row["shot"], technique) in known:
+                continue
+            try:
+                row |= measure(args, shot, flags, truth, args.output / "truth")
+            except RuntimeError as error:
+                row["note"] = str(error)
+            yield row
 
 
 if __name__ == "__main__":
