@@ -87,6 +87,19 @@ impl Recipe {
         }
     }
 
+    /// `stage` over all pixels, testing samples of the map.
+    fn over_samples(name: &'static str, shader: &'static str) -> Self {
+        let stage = Stage {
+            name,
+            shader,
+            work: Work::Pixels,
+        };
+        Self {
+            stages: vec![stage],
+            ..Self::default()
+        }
+    }
+
     /// Whether it works off lists of packets or pixels.
     pub fn has_lists(&self) -> bool {
         self.has(Work::PacketList) || self.has(Work::PixelList)

@@ -4,16 +4,8 @@
 //! Right: lights without extent. Wrong: every penumbra; edges alias in steps of a texel, and the filter blurs them
 //! by the same three texels everywhere.
 
-use super::{Recipe, Stage, Work};
+use super::Recipe;
 
 pub fn recipe() -> Recipe {
-    let stage = Stage {
-        name: "hard_visibility",
-        shader: "hard_visibility.comp",
-        work: Work::Pixels,
-    };
-    Recipe {
-        stages: vec![stage],
-        ..Recipe::default()
-    }
+    Recipe::over_samples("hard_visibility", "hard_visibility.comp")
 }

@@ -5,16 +5,8 @@
 //! parallel to the light is right, any other is a guess; blockers of different depths are averaged into one that is
 //! nowhere; blockers that the search misses leave holes; few samples are noise.
 
-use super::{Recipe, Stage, Work};
+use super::Recipe;
 
 pub fn recipe() -> Recipe {
-    let stage = Stage {
-        name: "pcss_visibility",
-        shader: "pcss_visibility.comp",
-        work: Work::Pixels,
-    };
-    Recipe {
-        stages: vec![stage],
-        ..Recipe::default()
-    }
+    Recipe::over_samples("pcss_visibility", "pcss_visibility.comp")
 }
