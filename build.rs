@@ -1,7 +1,7 @@
 //! Compiles `glsl/` to SPIR-V and writes `shaders.rs`: every shader with its words, its bindings by
 //! name and kind. The library embeds them and needs no compiler at run time.
 
-use std::{env, fmt::Write, fs, path::Path, path::PathBuf};
+use std::{env, fmt::Write, fs, path::Path, path::PathBuf, process::Command};
 
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, Op};
@@ -44,6 +44,27 @@ fn main() {
     }
     table.push_str("];\n");
     fs::write(out.join("shaders.rs"), table).expect("OUT_DIR is writable");
+    println!("cargo:rustc-env=HALFSHADE_COMMIT={}", commit());
+}
+
+/// The commit that is built, with a "+" when files differ from it; "unknown" outside of a repository.
+fn commit() -> String {
+    let git = |args: &[&str]| {
+        let output = Command::new("git").args(args).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    let Some(commit) = git(&["rev-parse", "--short=12", "HEAD"]) else {
+        return "unknown".into();
+    };
+    // Its log changes with each commit and checkout. Changes of files run this script only if they are shaders.
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo:rerun-if-changed={log}");
+    }
+    match git(&["status", "--porcelain", "--untracked-files=no"]) {
+        Some(changes) if changes.is_empty() => commit,
+        _ => commit + "+",
+    }
 }
 
 /// Every shader with an entry point below `folder`, in a fixed order.

@@ -4,6 +4,7 @@
 
 use crate::Result;
 use crate::shared::Costs;
+use crate::spread::median;
 
 /// A challenger must be better by this share, whatever the noise: less is not worth a change.
 const GAIN_MIN: f64 = 0.005;
@@ -47,21 +48,18 @@ impl<T> Measured<T> {
     }
 }
 
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match sorted.len() {
-        0 => f64::NAN,
-        n if n % 2 == 0 => 0.5 * (sorted[middle - 1] + sorted[middle]),
-        _ => sorted[middle],
-    }
-}
-
 fn deviation(values: &[f64]) -> f64 {
     let middle = median(values);
     let distances: Vec<f64> = values.iter().map(|value| (value - middle).abs()).collect();
     median(&distances)
+}
+
+/// In which order to measure `count` candidates in a round: every other round backwards.
+pub fn turns(round: usize, count: usize) -> impl Iterator<Item = usize> {
+    (0..count).map(move |turn| match round % 2 {
+        0 => turn,
+        _ => count - 1 - turn,
+    })
 }
 
 /// Measures all candidates `rounds` times, in turns, every other round backwards: drift of the machine
@@ -85,11 +83,7 @@ pub fn race<T: Clone>(
         if round >= ROUNDS_MIN && !goes_on() {
             break;
         }
-        for turn in 0..candidates.len() {
-            let index = match round % 2 {
-                0 => turn,
-                _ => candidates.len() - 1 - turn,
-            };
+        for index in turns(round, candidates.len()) {
             let cost = measure(&candidates[index])?;
             measured[index].costs.push(cost);
         }

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use halfshade::shot::{MAX_SIZE, Shot};
 use halfshade::{Error, Result};
@@ -16,10 +18,23 @@ pub mod reference;
 pub mod render;
 pub mod shot_args;
 mod stats;
+pub mod study;
 
 /// The user's folders for caches and data. None: there is no home folder.
 pub fn project_folders() -> Option<directories::ProjectDirs> {
     directories::ProjectDirs::from("", "", "halfshade")
+}
+
+/// A flag that Ctrl-C sets, for work that ends in its own way.
+///
+/// # Errors
+/// Ctrl-C cannot be caught.
+pub fn on_interrupt() -> Result<Arc<AtomicBool>> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Error::Invalid(format!("Ctrl-C cannot be caught: {error}")))?;
+    Ok(interrupted)
 }
 
 /// Prints to stdout; a reader that has gone away (`| head`) is no error.

@@ -2,7 +2,7 @@
 
 mod picture;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::image::Plane;
 use crate::{Error, Result};
@@ -25,7 +25,7 @@ pub const HEATMAP_LEGEND: &str = "white: equal; blue: too dark; red: too bright 
 /// Error of an image of visibility, `image − reference`. All sums are made in f64.
 ///
 /// The figures over *shadow pixels* (reference < 1) are 0 when `shadow_pixels` is 0.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// Pixels compared: a surface in both images and, where `facing` was given, facing = 1.
     pub pixels: usize,
@@ -200,7 +200,12 @@ pub fn heatmap(image: &Plane, reference: &Plane, facing: Option<&Plane>) -> Resu
 
 /// Whether the surface in a pixel does not face the whole light, or is none.
 fn left_out(facing: Option<&Plane>, index: usize) -> bool {
-    facing.is_some_and(|facing| facing.data[index].is_nan() || facing.data[index] < WHOLLY_FACING)
+    facing.is_some_and(|facing| !faces_wholly(facing.data[index]))
+}
+
+/// Whether a pixel with this `facing` has a surface that faces the whole light.
+pub(crate) fn faces_wholly(facing: f32) -> bool {
+    facing >= WHOLLY_FACING
 }
 
 /// The colour of one pixel. The ramps are ColorBrewer's RdBu (safe for the colour-blind) with white

@@ -30,6 +30,9 @@ pub enum Error {
     /// The allocator failed for the named resource.
     #[error("no device memory for {resource}: {message}")]
     Memory { resource: String, message: String },
+    /// Ctrl-C, or a caller's wish.
+    #[error("interrupted")]
+    Interrupted,
     /// The validation layer reported warnings or errors.
     #[error("the validation layer reported {} message(s), the first: {}", .0.len(), .0[0])]
     Validation(Vec<String>),
@@ -38,6 +41,12 @@ pub enum Error {
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
+    /// Whether the device can do nothing further.
+    pub fn is_device_lost(&self) -> bool {
+        let lost = ash::vk::Result::ERROR_DEVICE_LOST;
+        matches!(self, Self::Vulkan { result, .. } if *result == lost)
+    }
+
     pub fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
         Self::Io {
             path: path.into(),

@@ -14,6 +14,10 @@ pub mod render;
 pub mod scene;
 pub mod shared;
 pub mod shot;
+#[cfg(feature = "cli")]
+pub mod spread;
+#[cfg(feature = "cli")]
+pub mod study;
 pub mod sub_light;
 pub mod technique;
 pub use error::{Error, Result};

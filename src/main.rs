@@ -24,6 +24,7 @@ enum Command {
     Plan(cli::plan::Args),
     Reference(cli::reference::Args),
     Compare(cli::compare::Args),
+    Study(cli::study::Args),
     Calibrate(cli::calibrate::Args),
     Devices(cli::devices::Args),
 }
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Plan(args) => cli::plan::run(&args),
         Command::Reference(args) => cli::reference::run(&args),
         Command::Compare(args) => cli::compare::run(&args),
+        Command::Study(args) => cli::study::run(&args),
         Command::Calibrate(args) => cli::calibrate::run(&args),
         Command::Devices(args) => cli::devices::run(&args),
     };

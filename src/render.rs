@@ -1,5 +1,6 @@
 //! The frame: front, technique, back.
 
+mod counts;
 mod resources;
 mod specialization;
 mod view;
@@ -326,6 +327,28 @@ impl Renderer {
     /// The picture, RGBA8, row by row from the top.
     pub fn picture(&self) -> Result<Vec<u8>> {
         self.read_buffer("picture", 4 * self.pixel_count())
+    }
+
+    /// The picture that another visibility would give, light after light as [`Self::visibility`] has them, after a
+    /// frame has been rendered.
+    ///
+    /// # Errors
+    /// The renderer makes no picture, `visibility` has not a value for each light and pixel, or a Vulkan call failed.
+    pub fn picture_of(&mut self, visibility: &[f32]) -> Result<Vec<u8>> {
+        let expected = self.pixel_count() * self.fresh.lights.len();
+        let Some(shade) = self.shade.as_ref().filter(|_| visibility.len() == expected) else {
+            return Err(Error::Invalid(format!(
+                "{} values of visibility make no picture where {expected} are needed, or none was asked for",
+                visibility.len()
+            )));
+        };
+        self.resources.buffer("visibility")?.upload(visibility)?;
+        self.recorder.begin()?;
+        let groups = Groups::Direct(tiles(&self.fresh));
+        self.recorder
+            .dispatch("shade", shade, Push::default(), groups);
+        self.recorder.submit_and_wait()?;
+        self.picture()
     }
 
     /// Zero unless the settings ask for counters; summed over all frames since the last reset.

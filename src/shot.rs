@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::scene::{AreaLight, Camera, MAX_COORDINATE, Scene};
 use crate::{Error, Result};
 
+mod flags;
 mod load;
 mod names;
 
@@ -75,7 +76,7 @@ pub enum Occluders {
 }
 
 /// The knobs of a technique.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     pub technique: Technique,
     /// [pixel] Width and height of a packet, each 1 to 8; 1×1 is the pixel-wise path.

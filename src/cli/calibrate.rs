@@ -5,20 +5,20 @@ mod table;
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use halfshade::Result;
 use halfshade::calibrate::{Measured, Thoroughness, search_costs, winner};
 use halfshade::gpu::Gpu;
 use halfshade::shared::Costs;
 use halfshade::shot::{Leaf, Mapping};
-use halfshade::{Error, Result};
 
 use self::bench::Bench;
 use self::table::{rows, written};
 use super::calibration::{Calibration, Row};
-use super::print;
 use super::shot_args::DeviceArgs;
+use super::{on_interrupt, print};
 
 /// Tunes packet, mapping, leaf rule and cost model for this device, and stores them for `render`.
 ///
@@ -88,10 +88,7 @@ const LEAVES_RACED: f64 = 0.65;
 /// A shot cannot be read or rendered, the device measures no time, the result cannot be stored, or Ctrl-C;
 /// then the stored calibration is as it was.
 pub fn run(args: &Args) -> Result<()> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let on_interrupt = Arc::clone(&interrupted);
-    ctrlc::set_handler(move || on_interrupt.store(true, Ordering::Relaxed))
-        .map_err(|error| Error::Invalid(format!("Ctrl-C cannot be caught: {error}")))?;
+    let interrupted = on_interrupt()?;
     args.device
         .with_device(|gpu| calibrate(args, gpu, &interrupted))
 }

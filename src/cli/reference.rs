@@ -1,8 +1,6 @@
 //! `halfshade reference`: ray-traced ground truth.
 
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use halfshade::cpu::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
@@ -11,7 +9,7 @@ use halfshade::shot::{Overrides, Shot};
 
 use halfshade::{Error, Result};
 
-use super::{parse_size, print, print_notes, progress};
+use super::{on_interrupt, parse_size, print, print_notes, progress};
 
 /// Traces the true visibility of a light with rays, on the CPU.
 ///
@@ -49,10 +47,7 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
     print_notes(&shot);
-    let cancel = Arc::new(AtomicBool::new(false));
-    let on_interrupt = Arc::clone(&cancel);
-    ctrlc::set_handler(move || on_interrupt.store(true, Ordering::Relaxed))
-        .map_err(|error| Error::Invalid(format!("Ctrl-C cannot be caught: {error}")))?;
+    let cancel = on_interrupt()?;
     let start = Instant::now();
     let options = ReferenceOptions {
         samples: args.samples,
@@ -62,12 +57,12 @@ pub fn run(args: &Args) -> Result<()> {
     let advance = |share: f64| bar.set_position((share * 1000.0) as u64);
     let traced = trace(&shot, args.light, options, &advance, &cancel);
     bar.finish_and_clear();
-    let image = traced.map_err(|error| match cancel.load(Ordering::Relaxed) {
-        true => Error::Invalid(format!(
+    let image = traced.map_err(|error| match error {
+        Error::Interrupted => Error::Invalid(format!(
             "interrupted, {} was not written",
             args.output.display()
         )),
-        false => error,
+        error => error,
     })?;
     let channels = [
         ("Y", &image.visibility),

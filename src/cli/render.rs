@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfshade::gpu::Gpu;
-use halfshade::image::{Plane, check_writable, write_atomically, write_exr, write_png};
+use halfshade::image::{Plane, RgbImage, check_writable, write_atomically, write_exr};
 use halfshade::plan::Outputs;
 use halfshade::render::{DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use halfshade::shared::Exposure;
@@ -57,10 +57,8 @@ pub struct Args {
 /// What a run has made. It is written when the device is closed and the validation layer has had its
 /// last word.
 struct Products {
-    /// RGB8
-    picture: Option<Vec<u8>>,
+    picture: Option<RgbImage>,
     visibility: Option<Vec<(String, Plane)>>,
-    size: (u32, u32),
     stats: Stats,
 }
 
@@ -124,9 +122,10 @@ fn render(args: &Args, gpu: &Arc<Gpu>) -> Result<Products> {
     let picture = args.output.as_ref().map(|_| renderer.picture());
     let visibility = (args.visibility.as_ref()).map(|_| planes(args.light, &shot, &renderer));
     Ok(Products {
-        picture: picture.transpose()?.map(|rgba| rgb_of(&rgba)),
+        picture: picture
+            .transpose()?
+            .map(|rgba| RgbImage::from_rgba(shot.width, shot.height, &rgba)),
         visibility: visibility.transpose()?,
-        size: (shot.width, shot.height),
         stats,
     })
 }
@@ -176,7 +175,7 @@ fn planes(light: Option<usize>, shot: &Shot, renderer: &Renderer) -> Result<Vec<
 impl Products {
     fn write(&self, args: &Args) -> Result<()> {
         if let (Some(file), Some(picture)) = (&args.output, &self.picture) {
-            write_png(file, self.size.0, self.size.1, picture)?;
+            picture.write(file)?;
         }
         if let (Some(file), Some(planes)) = (&args.visibility, &self.visibility) {
             let channels: Vec<(&str, &Plane)> = planes
@@ -192,10 +191,4 @@ impl Products {
         }
         Ok(())
     }
-}
-
-fn rgb_of(rgba: &[u8]) -> Vec<u8> {
-    rgba.chunks_exact(4)
-        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-        .collect()
 }

@@ -133,7 +133,7 @@ impl ShotArgs {
 }
 
 /// The value of `--packet`; its range is checked with the other settings.
-fn parse_packet(text: &str) -> Result<(u32, u32), String> {
+pub fn parse_packet(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X', '×']);
     sides
         .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)))

@@ -7,6 +7,7 @@ use halfshade::gpu::Gpu;
 use halfshade::render::{Frame, Renderer};
 use halfshade::shared::Counters;
 use halfshade::shot::{Settings, Shot};
+use halfshade::spread::Spread;
 use serde::Serialize;
 
 /// Times, memory and counts of a render.
@@ -44,14 +45,6 @@ struct PassStats {
     gpu_ms: Spread,
 }
 
-/// Over frames.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct Spread {
-    median: f64,
-    min: f64,
-    max: f64,
-}
-
 /// What the device left out of the plan.
 #[derive(Debug, Serialize)]
 struct ViewStats {
@@ -64,23 +57,6 @@ struct ViewStats {
     caster_triangles_mean: f64,
     /// [level] Most MSSM levels built in a view.
     mssm_levels_max: u32,
-}
-
-impl Spread {
-    fn of(mut values: Vec<f64>) -> Self {
-        values.sort_by(f64::total_cmp);
-        let middle = values.len() / 2;
-        let median = match values.len() {
-            0 => 0.0,
-            n if n % 2 == 0 => 0.5 * (values[middle - 1] + values[middle]),
-            _ => values[middle],
-        };
-        Self {
-            median,
-            min: values.first().copied().unwrap_or(0.0),
-            max: values.last().copied().unwrap_or(0.0),
-        }
-    }
 }
 
 impl Stats {
@@ -100,7 +76,7 @@ impl Stats {
                 .map(|(_, ms)| ms)
                 .sum()
         };
-        let over = |name| Spread::of(frames.iter().map(|(frame, _)| sum(frame, name)).collect());
+        let over = |name| Spread::of(frames.iter().map(|(frame, _)| sum(frame, name)));
         let passes = plan.passes.iter().map(|&(name, count)| PassStats {
             name: name.into(),
             count,
@@ -122,7 +98,7 @@ impl Stats {
             frames: frames.len(),
             passes: passes.collect(),
             total_gpu_ms: over(None),
-            counters: counters.map(|after| counts(&after, &last)),
+            counters: counters.map(|after| after.since(&last)),
             memory_bytes,
             views: ViewStats::new(renderer)?,
             validation_messages: gpu
@@ -167,37 +143,4 @@ impl ViewStats {
             mssm_levels_max: fits.iter().map(|fit| fit.level_count).max().unwrap_or(0),
         })
     }
-}
-
-/// The last frame's counts.
-fn counts(after: &Counters, before: &Counters) -> BTreeMap<&'static str, u64> {
-    let wide = |count: [u32; 2]| u64::from(count[0]) | u64::from(count[1]) << 32;
-    let narrow = |after: u32, before: u32| u64::from(after.wrapping_sub(before));
-    BTreeMap::from([
-        ("pixels", narrow(after.pixels, before.pixels)),
-        ("lit", narrow(after.lit, before.lit)),
-        ("umbra", narrow(after.umbra, before.umbra)),
-        ("penumbra", narrow(after.penumbra, before.penumbra)),
-        ("packets", narrow(after.packets, before.packets)),
-        (
-            "coherent_packets",
-            narrow(after.coherent_packets, before.coherent_packets),
-        ),
-        (
-            "reprocessed_packets",
-            narrow(after.reprocessed_packets, before.reprocessed_packets),
-        ),
-        (
-            "nodes_visited",
-            wide(after.nodes_visited).wrapping_sub(wide(before.nodes_visited)),
-        ),
-        (
-            "edges_extracted",
-            wide(after.edges_extracted).wrapping_sub(wide(before.edges_extracted)),
-        ),
-        (
-            "samples_read",
-            wide(after.samples_read).wrapping_sub(wide(before.samples_read)),
-        ),
-    ])
 }

@@ -84,7 +84,7 @@ pub fn trace(
     let row = |y: usize| -> Result<Vec<Pixel>> {
         let mut scratch = Scratch::default();
         let pixel = |x| match cancel.load(Ordering::Relaxed) {
-            true => Err(Error::Invalid("the tracing was interrupted".into())),
+            true => Err(Error::Interrupted),
             false => Ok(tracer.pixel(x, y, &mut scratch)),
         };
         let pixels = (0..width).map(pixel).collect();

@@ -24,6 +24,26 @@ pub struct RgbImage {
     pub rgb8: Vec<u8>,
 }
 
+impl RgbImage {
+    /// Drops the alpha of width × height × RGBA bytes.
+    pub fn from_rgba(width: u32, height: u32, rgba: &[u8]) -> Self {
+        let rgb = rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]);
+        Self {
+            width,
+            height,
+            rgb8: rgb.copied().collect(),
+        }
+    }
+
+    /// Writes the picture to a file.
+    ///
+    /// # Errors
+    /// As for [`write_png`].
+    pub fn write(&self, path: &Path) -> Result<()> {
+        write_png(path, self.width, self.height, &self.rgb8)
+    }
+}
+
 /// Writes width × height × RGB bytes (sRGB, the top row first).
 ///
 /// # Errors

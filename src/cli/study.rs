@@ -1,0 +1,35 @@
+//! `halfshade study`: error against run time.
+
+mod merge;
+mod pareto;
+mod sweep_args;
+mod tune;
+
+use halfshade::Result;
+
+/// Measures error against run time on your shots and device.
+///
+/// `pareto` sweeps techniques and settings and reports all of them; `merge` joins parts of a sweep that ran on
+/// several machines; `tune` finds the settings to use.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    Pareto(pareto::Args),
+    Merge(merge::Args),
+    Tune(tune::Args),
+}
+
+/// # Errors
+/// What the study fails with.
+pub fn run(args: &Args) -> Result<()> {
+    match &args.what {
+        What::Pareto(args) => pareto::run(args),
+        What::Merge(args) => merge::run(args),
+        What::Tune(args) => tune::run(args),
+    }
+}

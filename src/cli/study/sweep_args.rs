@@ -1,0 +1,173 @@
+//! The flags that studies share: what to try, and how to measure it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use halfshade::cpu::reference::ReferenceOptions;
+use halfshade::gpu::Gpu;
+use halfshade::shot::{Overrides, Settings, Technique};
+use halfshade::study::{Protocol, Subject, Sweep};
+use halfshade::{Error, Result};
+
+use super::super::calibration::Calibration;
+use super::super::shot_args::parse_packet;
+use super::super::{parse_size, print_notes, progress, project_folders};
+
+/// What to try. Values are separated by commas; a knob that a technique does not read multiplies nothing.
+#[derive(Debug, clap::Args)]
+pub struct SweepArgs {
+    /// Techniques [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    techniques: Vec<Technique>,
+    /// Values of --split [default: packet-contour 1,2,4, rivals 1]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    splits: Vec<u32>,
+    /// Values of --map
+    #[arg(
+        long,
+        value_name = "TEXELS",
+        value_delimiter = ',',
+        default_value = "256,512,1024"
+    )]
+    maps: Vec<u32>,
+    /// Values of --packet [default: this device's]
+    #[arg(long, value_name = "WxH", value_delimiter = ',', value_parser = parse_packet)]
+    packets: Vec<(u32, u32)>,
+    /// Values of --layers [default: each technique's usual ones]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    layers: Vec<u32>,
+    /// Values of --light-samples [default: 8,16]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    light_samples: Vec<u32>,
+    /// Values of --filter-samples, with half as many --blocker-samples [default: 32]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    filter_samples: Vec<u32>,
+    /// Values of --maps of reference-maps [default: 256]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    reference_maps: Vec<u32>,
+    /// Values of --bias [default: 1]
+    #[arg(long, value_name = "TEXELS", value_delimiter = ',')]
+    biases: Vec<f32>,
+}
+
+impl SweepArgs {
+    /// All settings to try; packets, mapping and leaf rule as calibrated where no flag names them.
+    ///
+    /// # Errors
+    /// A value is out of its range.
+    pub fn settings(&self, calibration: &Calibration) -> Result<Vec<Settings>> {
+        let sweep = Sweep {
+            techniques: self.techniques.clone(),
+            splits: self.splits.clone(),
+            maps: self.maps.clone(),
+            packets: match self.packets.is_empty() {
+                true => vec![calibration.packet],
+                false => self.packets.clone(),
+            },
+            layers: self.layers.clone(),
+            light_samples: self.light_samples.clone(),
+            filter_samples: self.filter_samples.clone(),
+            reference_maps: self.reference_maps.clone(),
+            biases: self.biases.clone(),
+        };
+        let mut all = sweep.settings();
+        for settings in &mut all {
+            settings.leaf = calibration.leaf;
+            settings.mapping = calibration.mapping;
+            settings.validate()?;
+        }
+        Ok(all)
+    }
+}
+
+/// How to measure.
+#[derive(Debug, clap::Args)]
+pub struct ProtocolArgs {
+    /// Size of the images in pixels, each side 1 to 32768 [default: the shots']
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<(u32, u32)>,
+    /// Rays per pixel of the truth, 16 to 65536
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=65536))]
+    samples: u32,
+    /// Timed frames of each candidate, 1 to 10000, after one to warm up; candidates take turns
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    pub repeat: u32,
+    /// Give a candidate no further frame after this wall time
+    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    seconds: f64,
+    /// Folder of traced truths, by what they show [default: in the user's cache folder]
+    #[arg(long, value_name = "FOLDER")]
+    truths: Option<PathBuf>,
+}
+
+impl ProtocolArgs {
+    /// # Errors
+    /// A value is out of its range.
+    pub fn protocol(
+        &self,
+        calibration: &Calibration,
+        counters: bool,
+        flicker_frames: u32,
+    ) -> Result<Protocol> {
+        if !(self.seconds > 0.0) {
+            return Err(Error::Invalid("--seconds is more than 0".into()));
+        }
+        Ok(Protocol {
+            repeat: self.repeat,
+            seconds: self.seconds,
+            counters,
+            flicker_frames,
+            costs: calibration.costs(),
+        })
+    }
+
+    /// A shot with its truth, traced under a progress bar where it is not known yet.
+    ///
+    /// # Errors
+    /// It cannot be read or traced, or was interrupted.
+    pub fn subject(&self, file: &Path, interrupted: &AtomicBool) -> Result<Subject> {
+        let overrides = Overrides {
+            size: self.size,
+            ..Overrides::default()
+        };
+        let options = ReferenceOptions {
+            samples: self.samples,
+            ..ReferenceOptions::default()
+        };
+        let cache = match (&self.truths, project_folders()) {
+            (Some(folder), _) => folder.clone(),
+            (None, Some(folders)) => folders.cache_dir().join("truths"),
+            (None, None) => {
+                return Err(Error::Invalid(
+                    "there is no home folder to keep traced truths in; name one with --truths"
+                        .into(),
+                ));
+            }
+        };
+        let bar = progress::bar("tracing the truth", 1000);
+        let advance = |share: f64| bar.set_position((share * 1000.0) as u64);
+        let subject = Subject::load(file, &overrides, &cache, options, &advance, interrupted);
+        bar.finish_and_clear();
+        let subject = subject?;
+        print_notes(&subject.shot);
+        Ok(subject)
+    }
+}
+
+/// What is known of a device, and the flag that Ctrl-C sets.
+pub struct Setting {
+    pub calibration: Calibration,
+    pub interrupted: Arc<AtomicBool>,
+}
+
+impl Setting {
+    /// # Errors
+    /// Ctrl-C cannot be caught.
+    pub fn new(gpu: &Gpu) -> Result<Self> {
+        Ok(Self {
+            calibration: Calibration::of(&gpu.info),
+            interrupted: super::super::on_interrupt()?,
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! Plots: error against time, log–log, a panel for each shot and device.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use crate::shot::Technique;
+use crate::{Error, Result};
+
+use super::front::{error, front, time};
+use super::run::{Measured, Run};
+
+/// [pixel] Of a panel, and of the legend above all panels.
+const PANEL: (u32, u32) = (640, 440);
+const LEGEND_HEIGHT: u32 = 64;
+/// Panels side by side.
+const COLUMNS: usize = 2;
+/// Errors and times below are drawn there: a logarithm has no zero.
+const ERROR_MIN: f64 = 1e-5;
+const MS_MIN: f64 = 1e-4;
+
+/// Colours that are told apart by the colour-blind (Paul Tol's "muted"), by technique.
+fn color(technique: Technique) -> RGBColor {
+    const COLORS: [(u8, u8, u8); 9] = [
+        (204, 51, 17),
+        (51, 34, 136),
+        (136, 204, 238),
+        (68, 170, 153),
+        (17, 119, 51),
+        (153, 153, 51),
+        (204, 102, 119),
+        (136, 34, 85),
+        (120, 120, 120),
+    ];
+    let index = Technique::ALL.iter().position(|&other| other == technique);
+    let (red, green, blue) = COLORS[index.unwrap_or(0) % COLORS.len()];
+    RGBColor(red, green, blue)
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Error over shadow pixels against the time of the shadow passes, every measured run a dot, the front a line.
+///
+/// # Errors
+/// A plot cannot be drawn.
+pub(super) fn pareto(runs: &[Run]) -> Result<String> {
+    let mut panels: Vec<(String, Vec<&Run>)> = Vec::new();
+    for run in runs {
+        let title = format!("{}, {}", run.shot, run.machine.device);
+        match panels.iter_mut().find(|(known, _)| *known == title) {
+            Some((_, panel)) => panel.push(run),
+            None => panels.push((title, vec![run])),
+        }
+    }
+    let columns = COLUMNS.min(panels.len()).max(1);
+    let rows = panels.len().div_ceil(columns).max(1);
+    let size = (
+        PANEL.0 * columns as u32,
+        LEGEND_HEIGHT + PANEL.1 * rows as u32,
+    );
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        root.fill(&WHITE).map_err(failed)?;
+        let (legend, below) = root.split_vertically(LEGEND_HEIGHT);
+        draw_legend(&legend, runs)?;
+        for (area, (title, panel)) in below.split_evenly((rows, columns)).iter().zip(&panels) {
+            draw_panel(area, title, panel)?;
+        }
+        root.present().map_err(failed)?;
+    }
+    Ok(svg)
+}
+
+fn failed<E: std::fmt::Display>(error: E) -> Error {
+    Error::Invalid(format!("a plot cannot be drawn: {error}"))
+}
+
+fn draw_legend(area: &Area, runs: &[Run]) -> Result<()> {
+    let used =
+        |technique: &&Technique| runs.iter().any(|run| run.settings.technique == **technique);
+    let font = ("sans-serif", 13).into_font();
+    let title = "Error against time: mean absolute error over shadow pixels, GPU time of the shadow passes; line: the front";
+    area.draw(&Text::new(title, (12, 8), font.clone()))
+        .map_err(failed)?;
+    let mut x = 18;
+    for &technique in Technique::ALL.iter().filter(used) {
+        let dot = Circle::new((x, 42), 5, color(technique).filled());
+        area.draw(&dot).map_err(failed)?;
+        area.draw(&Text::new(technique.name(), (x + 10, 35), font.clone()))
+            .map_err(failed)?;
+        x += 30 + 8 * technique.name().len() as i32;
+    }
+    Ok(())
+}
+
+fn draw_panel(area: &Area, title: &str, runs: &[&Run]) -> Result<()> {
+    let points: Vec<(&Run, (f64, f64))> = runs
+        .iter()
+        .filter_map(|run| Some((*run, point(run.measured()?))))
+        .collect();
+    let range = |pick: fn(&(f64, f64)) -> f64| {
+        let values = points.iter().map(|(_, point)| pick(point));
+        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        match low.is_finite() {
+            true => low / 1.5..high * 1.5,
+            false => 0.1..10.0,
+        }
+    };
+    let (times, errors) = (range(|point| point.0), range(|point| point.1));
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, ("sans-serif", 15))
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(64)
+        .build_cartesian_2d(times.log_scale(), errors.log_scale())
+        .map_err(failed)?;
+    chart
+        .configure_mesh()
+        .x_desc("time of the shadow passes [ms]")
+        .y_desc("mean absolute error, shadow pixels")
+        .x_label_formatter(&|ms| short(*ms))
+        .y_label_formatter(&|error| short(*error))
+        .light_line_style(RGBColor(240, 240, 240))
+        .draw()
+        .map_err(failed)?;
+    let line = front(runs.iter().copied());
+    let line = line.iter().filter_map(|run| Some(point(run.measured()?)));
+    chart
+        .draw_series(LineSeries::new(line, BLACK.stroke_width(1)))
+        .map_err(failed)?;
+    let dots = points
+        .iter()
+        .map(|(run, point)| Circle::new(*point, 4, color(run.settings.technique).filled()));
+    chart.draw_series(dots).map_err(failed)?;
+    Ok(())
+}
+
+fn point(measured: &Measured) -> (f64, f64) {
+    (time(measured).max(MS_MIN), error(measured).max(ERROR_MIN))
+}
+
+/// A number in as few characters as tell it from its neighbours on a logarithmic axis.
+fn short(value: f64) -> String {
+    let digits = (1.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.digits$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}

@@ -1,0 +1,175 @@
+//! A shot to measure on, with its truth.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use crate::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
+use crate::image::{Plane, read_exr, write_exr};
+use crate::scene::Texture;
+use crate::shot::{Overrides, Shot};
+use crate::{Error, Result};
+
+/// Channels of a stored truth.
+const CHANNELS: [&str; 3] = ["Y", "facing", "stderr"];
+
+/// A shot and what is true of it.
+#[derive(Debug)]
+pub struct Subject {
+    /// Name of the file without its ending.
+    pub name: String,
+    /// As given on the command line.
+    pub file: String,
+    pub shot: Shot,
+    /// Hash of all that the shot shows.
+    pub content: String,
+    /// Rays per pixel of the truth.
+    pub truth_samples: u32,
+    /// The truth about all lights, one below the other: an image of width × (lights · height).
+    pub visibility: Plane,
+    /// Likewise the share of each light that is in front of the surface.
+    pub facing: Plane,
+}
+
+impl Subject {
+    /// Reads a shot and its truth, which is traced if `cache` does not hold it yet.
+    ///
+    /// `progress` is called with the share of the tracing that is done; setting `cancel` ends it.
+    ///
+    /// # Errors
+    /// The shot cannot be read or traced, or `cancel` was set.
+    pub fn load(
+        file: &Path,
+        overrides: &Overrides,
+        cache: &Path,
+        options: ReferenceOptions,
+        progress: &(dyn Fn(f64) + Sync),
+        cancel: &AtomicBool,
+    ) -> Result<Self> {
+        let shot = Shot::load(file, overrides)?;
+        Self::of_shot(
+            &file_name(file),
+            file,
+            shot,
+            cache,
+            options,
+            progress,
+            cancel,
+        )
+    }
+
+    /// Like [`Self::load`], of a shot that is in memory and known as `name`.
+    ///
+    /// # Errors
+    /// It cannot be traced, or `cancel` was set.
+    pub fn of_shot(
+        name: &str,
+        file: &Path,
+        shot: Shot,
+        cache: &Path,
+        options: ReferenceOptions,
+        progress: &(dyn Fn(f64) + Sync),
+        cancel: &AtomicBool,
+    ) -> Result<Self> {
+        let content = content_hash(&shot);
+        let lights = shot.lights.len();
+        let mut images = Vec::new();
+        for light in 0..lights {
+            let share = |done| progress((light as f64 + done) / lights as f64);
+            let file = truth_file(cache, &content, light, options);
+            images.push(cached_truth(&file, &shot, light, options, &share, cancel)?);
+        }
+        let stacked = |plane: fn(&ReferenceImage) -> &Plane| {
+            let data = images.iter().flat_map(|image| plane(image).data.clone());
+            Plane::new(
+                shot.width as usize,
+                lights * shot.height as usize,
+                data.collect(),
+            )
+        };
+        Ok(Self {
+            name: name.into(),
+            file: file.display().to_string(),
+            content,
+            truth_samples: options.samples,
+            visibility: stacked(|image| &image.visibility)?,
+            facing: stacked(|image| &image.facing)?,
+            shot,
+        })
+    }
+}
+
+fn file_name(file: &Path) -> String {
+    let stem = file.file_stem().unwrap_or(file.as_os_str());
+    stem.to_string_lossy().into_owned()
+}
+
+fn truth_file(cache: &Path, content: &str, light: usize, options: ReferenceOptions) -> PathBuf {
+    let ReferenceOptions { samples, seed } = options;
+    cache.join(format!("{content}-{light}-{samples}-{seed}.exr"))
+}
+
+/// The truth as `file` has it; otherwise traced, and kept there.
+fn cached_truth(
+    file: &Path,
+    shot: &Shot,
+    light: usize,
+    options: ReferenceOptions,
+    progress: &(dyn Fn(f64) + Sync),
+    cancel: &AtomicBool,
+) -> Result<ReferenceImage> {
+    if let Some(image) = stored_truth(file, shot) {
+        return Ok(image);
+    }
+    let image = trace(shot, light, options, progress, cancel)?;
+    let folder = file.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+    let planes = [&image.visibility, &image.facing, &image.standard_error];
+    let channels: Vec<(&str, &Plane)> = CHANNELS.into_iter().zip(planes).collect();
+    write_exr(file, &channels)?;
+    Ok(image)
+}
+
+/// None: it is not there, or is not what was once written, and is traced anew.
+fn stored_truth(file: &Path, shot: &Shot) -> Option<ReferenceImage> {
+    let mut channels = read_exr(file).ok()?;
+    let mut take = |wanted: &str| {
+        let index = channels.iter().position(|(name, _)| name == wanted)?;
+        let plane = channels.remove(index).1;
+        ((plane.width, plane.height) == (shot.width as usize, shot.height as usize))
+            .then_some(plane)
+    };
+    Some(ReferenceImage {
+        visibility: take(CHANNELS[0])?,
+        facing: take(CHANNELS[1])?,
+        standard_error: take(CHANNELS[2])?,
+    })
+}
+
+/// A hash of everything that decides what a shot shows, its settings apart.
+pub fn content_hash(shot: &Shot) -> String {
+    let scene = &shot.scene;
+    let mut hasher = blake3::Hasher::new();
+    let mut add = |bytes: &[u8]| {
+        hasher.update(&(bytes.len() as u64).to_le_bytes());
+        hasher.update(bytes);
+    };
+    add(bytemuck::cast_slice(&scene.positions));
+    add(bytemuck::cast_slice(&scene.texcoords));
+    add(bytemuck::cast_slice(&scene.triangles));
+    add(bytemuck::cast_slice(&scene.triangle_materials));
+    for texture in &scene.textures {
+        add(&texture.rgba);
+        let description = Texture {
+            rgba: Vec::new(),
+            ..texture.clone()
+        };
+        add(format!("{description:?}").as_bytes());
+    }
+    // What is small, by all its fields: the text of a number gives all its digits.
+    let small = (scene.origin, scene.opaque_count, &scene.materials);
+    add(format!("{small:?}").as_bytes());
+    let view = (&shot.camera, shot.width, shot.height, &shot.lights);
+    add(format!("{view:?}").as_bytes());
+    hasher.finalize().to_hex()[..16].to_owned()
+}
