@@ -35,6 +35,8 @@ pub struct Plan {
     pub outputs: Outputs,
     /// [level] MSSM levels that there is memory for; 0 = no MSSM.
     pub levels: u32,
+    /// [bit] 16 or 32, of a bound in it.
+    pub mssm_bits: u32,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
     /// [turn] After which the driver ends loops.
@@ -131,6 +133,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
         lights: Vec::new(),
         outputs,
         levels: 0,
+        mssm_bits: shot.settings.mssm_bits,
         map: 0,
         loop_turns: limits.loop_turns,
         packet: shot.settings.packet,
@@ -209,7 +212,7 @@ impl Plan {
         self.map = side;
         if self.needs(|recipe| recipe.mssm) {
             let wanted = (side - 1).ilog2() + 2;
-            let level_bytes = u64::from(side) * u64::from(side) * 8;
+            let level_bytes = u64::from(side) * u64::from(side) * self.mssm_texel_bytes();
             let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
             self.levels = wanted.min(LEVELS_MAX).min(fitting as u32);
             if self.levels == 0 {
@@ -230,6 +233,11 @@ impl Plan {
     /// Whether some light's views need something of their recipe.
     pub fn needs(&self, test: impl Fn(&Recipe) -> bool) -> bool {
         self.lights.iter().any(|light| light.needs(&test))
+    }
+
+    /// [byte] Of a pair of bounds.
+    pub(crate) fn mssm_texel_bytes(&self) -> u64 {
+        u64::from(self.mssm_bits / 4)
     }
 
     /// [level] Of the hierarchical shadow map, from 2×2 texels to a single node.

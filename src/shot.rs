@@ -87,6 +87,8 @@ pub struct Settings {
     pub split: u32,
     /// [texel] [16, 8192] Width and height of a shadow map.
     pub map: u32,
+    /// 32 or 16: bits of a bound in the MSSM. With 16 they are conservative: half the memory, wider kernels.
+    pub mssm_bits: u32,
     /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
     pub footprint_pruning: bool,
     /// `PixelContour` only: walk the MSSM instead of every cell.
@@ -141,6 +143,7 @@ impl Default for Settings {
             mapping: Mapping::Serial,
             split: 4,
             map: 512,
+            mssm_bits: 32,
             footprint_pruning: true,
             hierarchical: false,
             gap_filling: true,
@@ -194,6 +197,13 @@ impl Settings {
         check(
             (16..=8192).contains(&self.map),
             format!("a shadow map is 16 to 8192 texels wide, not {}", self.map),
+        )?;
+        check(
+            [16, 32].contains(&self.mssm_bits),
+            format!(
+                "a bound of the MSSM has 16 or 32 bits, not {}",
+                self.mssm_bits
+            ),
         )?;
         for (what, value, range) in [
             ("layers of a shadow map", self.layers, 1..=4),

@@ -17,10 +17,10 @@ mod sweep;
 mod table;
 mod tune;
 
-pub use bench::{Bench, Protocol};
+pub use bench::{Bench, Pictures, Protocol};
 pub use folder::{Folder, Shard, key};
 pub use front::front;
-pub use run::{Errors, Machine, Measured, Outcome, Run};
+pub use run::{Errors, Machine, Measured, Outcome, Run, is_traversal, is_visibility};
 pub use subject::Subject;
 pub use sweep::{Sweep, usual_settings};
 pub use tune::{Goal, best};

@@ -70,6 +70,10 @@ fn turned(base: &Settings, turn: usize) -> Vec<Settings> {
         hierarchical: true,
         ..base.clone()
     });
+    list.push(Settings {
+        mssm_bits: 16,
+        ..base.clone()
+    });
     list
 }
 

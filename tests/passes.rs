@@ -46,8 +46,8 @@ fn receivers(traces: &Traces, points: &[Option<Point>]) -> Vec<Seen> {
         .collect()
 }
 
-fn check_mssm(traces: &Traces) -> Mssm {
-    let mssm = Mssm::new(MAP, &traces.map, traces.fit.level_count);
+fn check_mssm(traces: &Traces, bits: u32) -> Mssm {
+    let mssm = Mssm::new(MAP, &traces.map, traces.fit.level_count, bits);
     let bits = |bounds: &[f32; 2]| bounds.map(f32::to_bits);
     for level in 0..traces.fit.level_count as usize {
         let texels = (MAP * MAP) as usize;
@@ -234,7 +234,7 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
             continue;
         }
         let seen = receivers(&traces, &points(&renderer));
-        let mssm = check_mssm(&traces);
+        let mssm = check_mssm(&traces, shot.settings.mssm_bits);
         let kernels = check_kernels(&traces, &seen, &mssm);
         let counted = check_lists(shot, &traces, &seen, &kernels);
         undecided = [undecided[0] + counted[0], undecided[1] + counted[1]];
@@ -346,5 +346,15 @@ fn other_packets_leaf_rules_and_mappings() {
                 &shot,
             );
         }
+    });
+}
+
+#[test]
+fn a_hierarchy_of_16_bits() {
+    with_device(|gpu| {
+        let mut shot = shot("staircase");
+        shot.settings.split = 1;
+        shot.settings.mssm_bits = 16;
+        check(gpu, "staircase, bounds of 16 bits", &shot);
     });
 }

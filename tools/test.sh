@@ -20,6 +20,9 @@ fi
 # shellcheck source=tools/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
+# A browser for the test of the study's page.
+install_packages chromium chromium-driver fonts-dejavu-core
+
 step() {
     echo "test: $*"
     local start=$SECONDS

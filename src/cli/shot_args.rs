@@ -35,6 +35,9 @@ pub struct ShotArgs {
     /// Width and height of a shadow map in texels, 16 to 8192
     #[arg(long, value_name = "R", default_value_t = 512)]
     map: u32,
+    /// Bits of a depth bound in the hierarchy over the map, 32 or 16 (half its memory, the same image)
+    #[arg(long, value_name = "BITS", default_value_t = 32)]
+    mssm_bits: u32,
     /// Depth bias in texels of the receiver's slope, 0 or more
     #[arg(long, value_name = "TEXELS", default_value_t = 1.0)]
     bias: f32,
@@ -115,6 +118,7 @@ impl ShotArgs {
             mapping: self.mapping.unwrap_or(calibration.mapping),
             split: self.split.unwrap_or(usual.split),
             map: self.map,
+            mssm_bits: self.mssm_bits,
             footprint_pruning: !self.no_footprint_pruning,
             hierarchical: self.hierarchical,
             gap_filling: !self.no_gap_filling,

@@ -8,6 +8,7 @@ use halfshade::render::{Frame, Renderer};
 use halfshade::shared::Counters;
 use halfshade::shot::{Settings, Shot};
 use halfshade::spread::Spread;
+use halfshade::study::is_visibility;
 use serde::Serialize;
 
 /// Times, memory and counts of a render.
@@ -69,14 +70,10 @@ impl Stats {
         counted: bool,
     ) -> Result<Self> {
         let plan = &frames[0].0.plan;
-        let sum = |frame: &Frame, name: Option<&str>| -> f64 {
-            let passes = frame.timings.passes.iter();
-            passes
-                .filter(|(pass, _)| name.is_none_or(|name| name == pass))
-                .map(|(_, ms)| ms)
-                .sum()
+        let over = |name: Option<&str>| {
+            let counts = |pass: &str| name.is_none_or(|name| name == pass);
+            Spread::of(frames.iter().map(|(frame, _)| frame.timings.ms(counts)))
         };
-        let over = |name| Spread::of(frames.iter().map(|(frame, _)| sum(frame, name)));
         let passes = plan.passes.iter().map(|&(name, count)| PassStats {
             name: name.into(),
             count,
@@ -112,7 +109,7 @@ impl Stats {
     /// A line for the terminal.
     pub fn summary(&self) -> String {
         let visibility: f64 = (self.passes.iter())
-            .filter(|pass| pass.name.contains("visibility"))
+            .filter(|pass| is_visibility(&pass.name))
             .map(|pass| pass.gpu_ms.median)
             .sum();
         format!(

@@ -9,11 +9,11 @@ pub struct Mssm {
 }
 
 impl Mssm {
-    /// The lowest `level_count` levels over a map of `size` × `size` depths, row by row.
+    /// The lowest `level_count` levels over a map of `size` × `size` depths, row by row; bounds of 32 or 16 bits.
     ///
     /// # Panics
     /// When `depths` are not as many.
-    pub fn new(size: u32, depths: &[f32], level_count: u32) -> Self {
+    pub fn new(size: u32, depths: &[f32], level_count: u32, bits: u32) -> Self {
         assert_eq!(depths.len(), (size * size) as usize);
         let mut mssm = Self {
             size: size as i32,
@@ -25,7 +25,10 @@ impl Mssm {
                 0 => mssm.above(&samples, 1),
                 _ => mssm.above(&mssm.levels[level as usize - 1], 1 << (level - 1)),
             };
-            mssm.levels.push(next);
+            mssm.levels.push(match bits {
+                16 => next.into_iter().map(in_16_bits).collect(),
+                _ => next,
+            });
         }
         mssm
     }
@@ -88,6 +91,23 @@ fn joined(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
+/// Bounds as 16-bit floats hold them, which contain the bounds given: the largest normal such float (or 0) that is
+/// not above the lower, the smallest that is not below the upper. Twin of `mssm_16.comp`.
+pub fn in_16_bits([lower, upper]: [f32; 2]) -> [f32; 2] {
+    const DROPPED: u32 = 0x1fff;
+    const SMALLEST: f32 = 1.0 / 16384.0;
+    let below = match lower < SMALLEST {
+        true => 0.0,
+        false => f32::from_bits(lower.to_bits() & !DROPPED),
+    };
+    let above = f32::from_bits((upper.to_bits() + DROPPED) & !DROPPED);
+    let above = match upper > 0.0 {
+        true => above.max(SMALLEST),
+        false => 0.0,
+    };
+    [below, above]
+}
+
 /// Lowest level whose nodes cover `side` cells.
 fn level_covering(side: i32) -> i32 {
     (side as u32).next_power_of_two().ilog2() as i32
@@ -125,7 +145,7 @@ mod tests {
     #[test]
     fn every_texel_bounds_its_cells() {
         let depths = depths();
-        let mssm = Mssm::new(SIZE, &depths, 6);
+        let mssm = Mssm::new(SIZE, &depths, 6, 32);
         for level in 0..6 {
             for (i, &found) in mssm.level(level).iter().enumerate() {
                 let first = [i as i32 % SIZE as i32, i as i32 / SIZE as i32];
@@ -137,10 +157,38 @@ mod tests {
     #[test]
     fn a_query_of_a_square_is_exact() {
         let depths = depths();
-        let mssm = Mssm::new(SIZE, &depths, 6);
+        let mssm = Mssm::new(SIZE, &depths, 6, 32);
         for side in 1..12 {
             let last = [4 + side - 1, 6 + side - 1];
             assert_eq!(mssm.query([4, 6], last), bounds(&depths, [4, 6], side));
         }
+    }
+
+    /// A normal 16-bit float in [0, 1], or 0.
+    fn is_half(value: f32) -> bool {
+        value == 0.0 || value >= 1.0 / 16384.0 && value <= 1.0 && value.to_bits() & 0x1fff == 0
+    }
+
+    #[test]
+    fn bounds_of_16_bits_contain_what_they_bound() {
+        // All 16-bit floats in [0, 1], subnormal ones as well, with their neighbours in 32 bits; then a walk through
+        // all 32-bit floats there in odd steps.
+        let halves = (0..=0x3c00u32).map(|half| match half < 0x400 {
+            true => half as f32 / 16_777_216.0,
+            false => f32::from_bits((half << 13) + (112 << 23)),
+        });
+        let near =
+            halves.flat_map(|half| [half.next_down().max(0.0), half, half.next_up().min(1.0)]);
+        let walk = (0..=1f32.to_bits()).step_by(9973).map(f32::from_bits);
+        for depth in near.chain(walk) {
+            let [lower, upper] = in_16_bits([depth, depth]);
+            assert!(lower <= depth && depth <= upper, "{lower} {depth} {upper}");
+            assert!(is_half(lower) && is_half(upper), "{lower} {upper}");
+            // No wider than one step of 16-bit floats, 11 significant bits.
+            let step = f64::from(depth).max(1.0 / 16384.0) / 1024.0;
+            assert!(f64::from(upper) - f64::from(lower) <= step || depth < 1.0 / 16384.0);
+            assert_eq!(in_16_bits([lower, upper]), [lower, upper]);
+        }
+        assert_eq!(in_16_bits([0.0, 0.0]), [0.0, 0.0]);
     }
 }

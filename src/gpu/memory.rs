@@ -34,6 +34,8 @@ pub enum ImageKind {
     Layers,
     /// RG32F, an array written by compute passes and sampled.
     Bounds,
+    /// Likewise RG16F.
+    Bounds16,
 }
 
 impl ImageKind {
@@ -43,13 +45,14 @@ impl ImageKind {
             Self::Vector => vk::Format::R32G32B32A32_SFLOAT,
             Self::Color => vk::Format::R8G8B8A8_UNORM,
             Self::Bounds => vk::Format::R32G32_SFLOAT,
+            Self::Bounds16 => vk::Format::R16G16_SFLOAT,
         }
     }
 
     /// [byte]
     pub fn texel_bytes(self) -> u64 {
         match self {
-            Self::Depth | Self::Layers | Self::Color => 4,
+            Self::Depth | Self::Layers | Self::Color | Self::Bounds16 => 4,
             Self::Bounds => 8,
             Self::Vector => 16,
         }
@@ -60,7 +63,7 @@ impl ImageKind {
             Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::Vector | Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             Self::Layers => vk::ImageUsageFlags::empty(),
-            Self::Bounds => vk::ImageUsageFlags::STORAGE,
+            Self::Bounds | Self::Bounds16 => vk::ImageUsageFlags::STORAGE,
         };
         own | vk::ImageUsageFlags::SAMPLED
             | vk::ImageUsageFlags::TRANSFER_SRC

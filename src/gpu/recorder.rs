@@ -26,6 +26,14 @@ pub struct Timings {
     pub passes: Vec<(String, f64)>,
 }
 
+impl Timings {
+    /// [ms] Sum over the passes whose name counts.
+    pub fn ms(&self, counts: impl Fn(&str) -> bool) -> f64 {
+        let passes = self.passes.iter().filter(|(name, _)| counts(name));
+        passes.map(|(_, ms)| ms).sum()
+    }
+}
+
 /// A command buffer. Its recording calls cannot fail; it is submitted as a whole.
 pub struct Recorder {
     gpu: Arc<Gpu>,

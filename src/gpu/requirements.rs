@@ -48,7 +48,7 @@ impl Features {
 }
 
 /// Formats and how each is used.
-const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 4] = [
+const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 5] = [
     (
         vk::Format::D32_SFLOAT,
         vk::FormatFeatureFlags::from_raw(
@@ -64,6 +64,14 @@ const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 4] = [
                 | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
         ),
         "R32G32_SFLOAT as a sampled storage image",
+    ),
+    (
+        vk::Format::R16G16_SFLOAT,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw()
+                | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
+        ),
+        "R16G16_SFLOAT as a sampled storage image",
     ),
     (
         vk::Format::R32G32B32A32_SFLOAT,

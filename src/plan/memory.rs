@@ -67,7 +67,10 @@ impl Plan {
             ("albedo", pixels * 4),
             ("caster_indices", if views > 0 { triangles * 12 } else { 0 }),
             ("shadow_map", map * 4),
-            ("mssm", map * 8 * u64::from(self.levels)),
+            (
+                "mssm",
+                map * self.mssm_texel_bytes() * u64::from(self.levels),
+            ),
             ("layers", map * 4 * u64::from(layers)),
             (
                 "hsm",

@@ -99,8 +99,8 @@ impl Plan {
             let levels = self.levels;
             writeln!(
                 out,
-                "  mssm        up to {levels} levels, {0}x{0} each",
-                self.map
+                "  mssm        up to {levels} levels, {0}x{0} each, bounds of {1} bits",
+                self.map, self.mssm_bits
             )?;
             writeln!(out, "  kernels     {width}x{height}, one for each pixel")?;
         }

@@ -155,7 +155,10 @@ fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resu
         ("shadow_map", ImageKind::Depth, map, 1),
         (
             "mssm",
-            ImageKind::Bounds,
+            match plan.mssm_bits {
+                16 => ImageKind::Bounds16,
+                _ => ImageKind::Bounds,
+            },
             side(plan, "mssm", map),
             plan.levels.max(1),
         ),

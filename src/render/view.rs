@@ -115,6 +115,10 @@ impl ViewPasses {
                 .then(|| compute(name, shader, Work::Pixels))
                 .transpose()
         };
+        let mssm = match plan.mssm_bits {
+            16 => "mssm_16.comp",
+            _ => "mssm.comp",
+        };
         let stage = |stage: &Stage| Ok((*stage, compute(stage.name, stage.shader, stage.work)?));
         Ok(Self {
             receivers: compute("receivers", "receivers.comp", Work::Pixels)?,
@@ -122,7 +126,7 @@ impl ViewPasses {
             fit: compute("fit", "fit.comp", Work::Packets)?,
             first_layer: casters(false)?,
             next_layers: (recipe.layers > 1).then(|| casters(true)).transpose()?,
-            mssm: structure(recipe.mssm, "mssm", "mssm.comp")?,
+            mssm: structure(recipe.mssm, "mssm", mssm)?,
             hsm: structure(recipe.hsm, "hsm", "hsm.comp")?,
             stages: recipe.stages.iter().map(stage).collect::<Result<_>>()?,
             layers: recipe.layers,

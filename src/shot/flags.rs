@@ -1,6 +1,7 @@
 //! Settings as the flags of the command line that ask for them, and as a short name.
 
 use super::{Settings, Technique};
+use crate::technique::Recipe;
 
 /// A flag of the command line; a switch has no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,11 +22,13 @@ impl Settings {
         flags
     }
 
-    /// A name for tables: the technique, and what differs from its usual settings.
+    /// A name for tables: the technique, its maps and views, and what else differs from its usual settings.
     pub fn label(&self) -> String {
+        const ALWAYS: [&str; 2] = ["map", "split"];
         let usual = Self::usual(self.technique).knobs();
+        let is_told = |knob: &&Knob| ALWAYS.contains(&knob.name) || !usual.contains(knob);
         let mut label = self.technique.to_string();
-        for knob in self.knobs().iter().filter(|knob| !usual.contains(knob)) {
+        for knob in self.knobs().iter().filter(is_told) {
             label += ", ";
             label += &knob.name.replace('-', " ");
             if let Some(value) = &knob.value {
@@ -47,8 +50,6 @@ impl Settings {
         add("map", self.map.to_string());
         add("bias", self.bias.to_string());
         let technique = self.technique;
-        let walks = technique == Technique::PacketContour
-            || technique == Technique::PixelContour && self.hierarchical;
         if technique != Technique::ReferenceMaps {
             add("split", self.split.to_string());
         }
@@ -56,6 +57,9 @@ impl Settings {
             add("packet", format!("{}x{}", self.packet.0, self.packet.1));
             add("leaf", self.leaf.to_string());
             add("mapping", self.mapping.to_string());
+        }
+        if Recipe::new(self, false).mssm {
+            add("mssm-bits", self.mssm_bits.to_string());
         }
         if technique == Technique::Bitmask {
             add("light-samples", self.light_samples.to_string());
@@ -79,7 +83,10 @@ impl Settings {
             Technique::Micropatch | Technique::MicropatchHierarchical
         );
         for (name, set) in [
-            ("no-footprint-pruning", walks && !self.footprint_pruning),
+            (
+                "no-footprint-pruning",
+                technique == Technique::PacketContour && !self.footprint_pruning,
+            ),
             (
                 "hierarchical",
                 technique == Technique::PixelContour && self.hierarchical,
@@ -103,10 +110,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn usual_settings_are_called_by_their_technique() {
-        for &technique in Technique::ALL {
-            assert_eq!(Settings::usual(technique).label(), technique.name());
-        }
+    fn usual_settings_are_called_by_their_technique_and_maps() {
+        let label = |technique| Settings::usual(technique).label();
+        assert_eq!(label(Technique::Pcss), "pcss, map 512, split 1");
+        assert_eq!(
+            label(Technique::PacketContour),
+            "packet-contour, map 512, split 4"
+        );
+        assert_eq!(label(Technique::ReferenceMaps), "reference-maps, map 512");
     }
 
     #[test]
@@ -117,10 +128,13 @@ mod tests {
             layers: 3,
             ..Settings::usual(Technique::PixelContour)
         };
-        assert_eq!(settings.label(), "pixel-contour, map 1024, hierarchical");
+        assert_eq!(
+            settings.label(),
+            "pixel-contour, map 1024, split 1, hierarchical"
+        );
         assert_eq!(
             settings.flags().join(" "),
-            "--technique pixel-contour --map 1024 --bias 1 --split 1 --hierarchical"
+            "--technique pixel-contour --map 1024 --bias 1 --split 1 --mssm-bits 32 --hierarchical"
         );
     }
 }

@@ -191,11 +191,10 @@ impl Folder {
         let plot = plot::pareto(&runs)?;
         write_text(&self.path.join("pareto.svg"), &plot)?;
         let sheets = sheet::sheets(self, &runs)?;
-        for (name, svg) in &sheets {
-            write_text(&self.path.join("sheets").join(name), svg)?;
+        for sheet in &sheets {
+            write_text(&self.path.join("sheets").join(&sheet.file), &sheet.svg)?;
         }
-        let names: Vec<&str> = sheets.iter().map(|(name, _)| name.as_str()).collect();
-        let page = page::page(&runs, &plot, &names)?;
+        let page = page::page(&runs, &plot, &sheets)?;
         write_text(&self.path.join("index.html"), &page)
     }
 }

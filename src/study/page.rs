@@ -6,7 +6,7 @@ use crate::{Error, Result};
 
 use super::front::front;
 use super::run::Run;
-use super::sheet::escaped;
+use super::sheet::{Sheet, escaped};
 use super::table::COLUMNS;
 
 /// The page with marks where its parts go.
@@ -14,11 +14,11 @@ const TEMPLATE: &str = include_str!("page.html");
 
 /// The page.
 ///
-/// `plot`: an SVG; `sheets`: names of files in the folder `sheets/`.
+/// `plot`: an SVG.
 ///
 /// # Errors
 /// A value cannot be written.
-pub(super) fn page(runs: &[Run], plot: &str, sheets: &[&str]) -> Result<String> {
+pub(super) fn page(runs: &[Run], plot: &str, sheets: &[Sheet]) -> Result<String> {
     let fronts = fronts(runs);
     let rows: Vec<Vec<String>> = runs
         .iter()
@@ -29,8 +29,7 @@ pub(super) fn page(runs: &[Run], plot: &str, sheets: &[&str]) -> Result<String> 
     let data = serde_json::to_string(&data).map_err(|error| Error::Invalid(error.to_string()))?;
     let mut figures = String::new();
     for sheet in sheets {
-        let name = escaped(sheet.trim_end_matches(".svg"));
-        let file = escaped(&address(sheet));
+        let (name, file) = (escaped(&sheet.title), address(&sheet.file));
         // Writing to a string cannot fail.
         let _ = writeln!(
             figures,

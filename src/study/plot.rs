@@ -120,13 +120,17 @@ fn draw_panel(area: &Area, title: &str, runs: &[&Run]) -> Result<()> {
         .configure_mesh()
         .x_desc("time of the shadow passes [ms]")
         .y_desc("mean absolute error, shadow pixels")
+        .y_labels(16)
         .x_label_formatter(&|ms| short(*ms))
         .y_label_formatter(&|error| short(*error))
         .light_line_style(RGBColor(240, 240, 240))
         .draw()
         .map_err(failed)?;
-    let line = front(runs.iter().copied());
-    let line = line.iter().filter_map(|run| Some(point(run.measured()?)));
+    let line = steps(
+        front(runs.iter().copied())
+            .iter()
+            .filter_map(|run| run.measured()),
+    );
     chart
         .draw_series(LineSeries::new(line, BLACK.stroke_width(1)))
         .map_err(failed)?;
@@ -135,6 +139,18 @@ fn draw_panel(area: &Area, title: &str, runs: &[&Run]) -> Result<()> {
         .map(|(run, point)| Circle::new(*point, 4, color(run.settings.technique).filled()));
     chart.draw_series(dots).map_err(failed)?;
     Ok(())
+}
+
+/// The front as a line: until the next run there is nothing better than the last one.
+fn steps<'a>(front: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> {
+    let mut line: Vec<(f64, f64)> = Vec::new();
+    for next in front.map(point) {
+        if let Some(&(_, error)) = line.last() {
+            line.push((next.0, error));
+        }
+        line.push(next);
+    }
+    line
 }
 
 fn point(measured: &Measured) -> (f64, f64) {

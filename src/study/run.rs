@@ -123,10 +123,7 @@ pub(super) struct Times<'a>(pub &'a [Timings]);
 
 impl Times<'_> {
     pub fn of(&self, counts: impl Fn(&str) -> bool) -> Spread {
-        Spread::of(self.0.iter().map(|frame| {
-            let passes = frame.passes.iter().filter(|(name, _)| counts(name));
-            passes.map(|(_, ms)| ms).sum()
-        }))
+        Spread::of(self.0.iter().map(|frame| frame.ms(&counts)))
     }
 
     pub fn by_pass(&self) -> BTreeMap<String, Spread> {
@@ -153,6 +150,12 @@ pub(super) fn is_compute(pass: &str) -> bool {
     is_shadow(pass) && !RASTER.contains(&pass)
 }
 
-pub(super) fn is_visibility(pass: &str) -> bool {
+/// Whether a pass integrates visibility.
+pub fn is_visibility(pass: &str) -> bool {
     pass.contains("visibility")
+}
+
+/// Whether a pass is part of what packets change: sorting pixels into lists, and visibility.
+pub fn is_traversal(pass: &str) -> bool {
+    pass == "classify" || is_visibility(pass)
 }

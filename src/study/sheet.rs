@@ -22,31 +22,50 @@ const HEAD: u32 = 56;
 /// Runs side by side.
 const COLUMNS: usize = 3;
 
-/// File name and SVG of the sheet of each technique on each shot and device; pictures are embedded.
+/// The runs of a technique on a shot and a device.
+pub(super) struct Sheet {
+    pub title: String,
+    /// In the folder `sheets/`.
+    pub file: String,
+    pub svg: String,
+}
+
+/// All sheets; pictures are embedded.
 ///
 /// # Errors
 /// A picture cannot be read.
-pub(super) fn sheets(folder: &Folder, runs: &[Run]) -> Result<Vec<(String, String)>> {
+pub(super) fn sheets(folder: &Folder, runs: &[Run]) -> Result<Vec<Sheet>> {
     let mut groups: BTreeMap<String, Vec<(&Run, &Measured)>> = BTreeMap::new();
     for run in runs {
         if let Some(measured) = run.measured() {
-            let name = [
-                run.shot.as_str(),
-                run.settings.technique.name(),
-                run.machine.device_kind.as_str(),
-                &run.content,
-            ];
-            let group = groups.entry(name.join("-") + ".svg").or_default();
-            group.push((run, measured));
+            let (width, height) = run.size;
+            let title = format!(
+                "{}, {width}x{height}: {} on {}",
+                run.shot, run.settings.technique, run.machine.device
+            );
+            groups.entry(title).or_default().push((run, measured));
         }
     }
     groups
         .into_iter()
-        .map(|(name, group)| Ok((name, sheet(folder, &group)?)))
+        .map(|(title, group)| {
+            Ok(Sheet {
+                svg: sheet(folder, &title, &group)?,
+                file: file_name(&title),
+                title,
+            })
+        })
         .collect()
 }
 
-fn sheet(folder: &Folder, group: &[(&Run, &Measured)]) -> Result<String> {
+/// Letters and digits; what stands between them is a hyphen.
+fn file_name(title: &str) -> String {
+    let words = title.split(|c: char| !c.is_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    words.join("-") + ".svg"
+}
+
+fn sheet(folder: &Folder, title: &str, group: &[(&Run, &Measured)]) -> Result<String> {
     let (run, _) = group[0];
     let scale = f64::from(PICTURE) / f64::from(run.size.0);
     let height = (f64::from(run.size.1) * scale).ceil() as u32;
@@ -58,11 +77,7 @@ fn sheet(folder: &Folder, group: &[(&Run, &Measured)]) -> Result<String> {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{total}\" \
          font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
-    let head = format!(
-        "{} on {}, {}",
-        run.settings.technique, run.shot, run.machine.device
-    );
-    text(&mut svg, (MARGIN, 20), &head);
+    text(&mut svg, (MARGIN, 20), title);
     text(
         &mut svg,
         (MARGIN, 40),

@@ -110,9 +110,7 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
         map: renderer
             .read_image("shadow_map", texels)
             .expect("shadow_map"),
-        mssm: renderer
-            .read_image("mssm", texels * plan.levels as usize)
-            .expect("mssm"),
+        mssm: bounds(renderer, texels * plan.levels as usize),
         kernels: renderer.read_buffer("kernels", pixels).expect("kernels"),
         packets: listed(renderer, "packets", lists.packet_count),
         pixels: listed(renderer, "pixels", lists.pixel_count),
@@ -120,6 +118,22 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
             .read_buffer("occlusion", pixels)
             .expect("occlusion"),
         counters: [before, renderer.counters().expect("counters")],
+    }
+}
+
+/// The MSSM, in however many bits.
+fn bounds(renderer: &Renderer, count: usize) -> Vec<[f32; 2]> {
+    // Zeros and normal numbers are all that is stored.
+    let widened = |half: u16| match half {
+        0 => 0.0,
+        half => f32::from_bits((u32::from(half) << 13) + (112 << 23)),
+    };
+    match renderer.plan().mssm_bits {
+        16 => {
+            let halves: Vec<[u16; 2]> = renderer.read_image("mssm", count).expect("mssm");
+            halves.into_iter().map(|pair| pair.map(widened)).collect()
+        }
+        _ => renderer.read_image("mssm", count).expect("mssm"),
     }
 }
 

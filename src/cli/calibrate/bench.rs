@@ -10,6 +10,7 @@ use halfshade::gpu::Gpu;
 use halfshade::plan::Outputs;
 use halfshade::render::{DEFAULT_EXPOSURE, Frame, RenderOptions, Renderer};
 use halfshade::shot::{Overrides, Settings, Shot, Technique};
+use halfshade::study::is_traversal;
 use halfshade::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -252,12 +253,7 @@ fn settings() -> Settings {
 
 /// [ms] More than 0.
 fn visibility_ms(frame: &Frame) -> Result<f64> {
-    let counts = |name: &str| name == "classify" || name.contains("visibility");
-    let passes = frame.timings.passes.iter();
-    let ms: f64 = passes
-        .filter(|(name, _)| counts(name))
-        .map(|(_, ms)| ms)
-        .sum();
+    let ms = frame.timings.ms(is_traversal);
     match ms > 0.0 {
         true => Ok(ms),
         false => Err(Error::Unsupported(
