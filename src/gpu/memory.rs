@@ -58,6 +58,11 @@ impl ImageKind {
         }
     }
 
+    /// Whether shaders know it as an array, however many layers it has.
+    fn is_array(self) -> bool {
+        matches!(self, Self::Bounds | Self::Bounds16 | Self::Layers)
+    }
+
     fn usage(self) -> vk::ImageUsageFlags {
         let own = match self {
             Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
@@ -254,10 +259,9 @@ impl Image {
 
     fn create_view(&self) -> Result<vk::ImageView> {
         // An array whatever the number of its layers: its shaders say so.
-        let array = matches!(self.kind, ImageKind::Bounds | ImageKind::Layers);
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw)
-            .view_type(if array {
+            .view_type(if self.kind.is_array() {
                 vk::ImageViewType::TYPE_2D_ARRAY
             } else {
                 vk::ImageViewType::TYPE_2D

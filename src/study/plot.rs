@@ -103,8 +103,10 @@ fn draw_panel(area: &Area, title: &str, runs: &[&Run]) -> Result<()> {
         let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| {
             (low.min(value), high.max(value))
         });
+        // At least a decade, so that the axis has numbers.
+        let spare = (10.0 / (high / low)).sqrt().max(1.5);
         match low.is_finite() {
-            true => low / 1.5..high * 1.5,
+            true => low / spare..high * spare,
             false => 0.1..10.0,
         }
     };
