@@ -11,7 +11,7 @@ use halfshade::shot::{Settings, Technique};
 /// [texel] Width and height of the map.
 const MAPS: [u32; 5] = [256, 512, 1024, 2048, 4096];
 /// [pixel] Few: they matter to nothing here but how many levels of the MSSM the largest kernel needs.
-const SIZE: u32 = 32;
+const SIZE: u32 = 8;
 
 /// Name of a structure, who reads it, bits of a bound, its pass and its bytes.
 type Structure = (

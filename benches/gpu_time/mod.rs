@@ -3,7 +3,7 @@
 
 use std::fs::{self, OpenOptions};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -16,8 +16,10 @@ use halfshade::shot::{Overrides, Settings, Shot};
 use halfshade::spread::Spread;
 use halfshade::study::Machine;
 
-/// Every benchmark that was measured, a JSON object a line; criterion's own reports do not know the device.
-const RECORDS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/../criterion/records.jsonl");
+/// The file of every benchmark that was measured, a JSON object a line; criterion's own reports do not know the device.
+fn records() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("criterion/records.jsonl")
+}
 
 /// GPU time in milliseconds.
 pub struct GpuTime;
@@ -92,8 +94,13 @@ pub fn open() -> Arc<Gpu> {
     let gpu = Gpu::open(&options).unwrap_or_else(|error| panic!("{error}"));
     let machine = Machine::of(&gpu);
     eprintln!(
-        "{} ({}), {}, subgroups of {}, commit {}; records in {RECORDS}",
-        machine.device, machine.device_kind, machine.driver, machine.subgroup_size, machine.commit
+        "{} ({}), {}, subgroups of {}, commit {}; records in {}",
+        machine.device,
+        machine.device_kind,
+        machine.driver,
+        machine.subgroup_size,
+        machine.commit,
+        records().display()
     );
     gpu
 }
@@ -108,7 +115,7 @@ pub fn shot(name: &str, size: u32) -> Shot {
     Shot::load(&file, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A renderer without a picture, which nobody measures here.
+/// A renderer without a picture, which nobody measures here, that has rendered a frame: drivers compile in the first.
 pub fn renderer(gpu: &Arc<Gpu>, shot: &Shot, settings: Settings) -> Renderer {
     let shot = Shot {
         settings,
@@ -119,7 +126,9 @@ pub fn renderer(gpu: &Arc<Gpu>, shot: &Shot, settings: Settings) -> Renderer {
         costs: DEFAULT_COSTS,
         exposure: DEFAULT_EXPOSURE,
     };
-    Renderer::new(gpu, &shot, options).unwrap_or_else(|error| panic!("{error}"))
+    let mut renderer = Renderer::new(gpu, &shot, options).unwrap_or_else(|error| panic!("{error}"));
+    frame_ms(&mut renderer, |_| true);
+    renderer
 }
 
 /// Benchmarks the GPU time of the passes that `counts`, and records it. The renderer is made, and its pipelines
@@ -164,11 +173,11 @@ fn record(gpu: &Gpu, id: &str, times: &[f64], bytes: u64) {
         "bytes": bytes,
         "machine": Machine::of(gpu),
     });
-    let file = Path::new(RECORDS);
-    let written = fs::create_dir_all(file.parent().unwrap_or(file))
-        .and_then(|()| OpenOptions::new().create(true).append(true).open(file))
+    let file = records();
+    let written = fs::create_dir_all(file.parent().unwrap_or(&file))
+        .and_then(|()| OpenOptions::new().create(true).append(true).open(&file))
         .and_then(|mut file| writeln!(file, "{line}"));
     if let Err(error) = written {
-        eprintln!("{RECORDS} cannot be written: {error}");
+        eprintln!("{} cannot be written: {error}", file.display());
     }
 }

@@ -166,7 +166,7 @@ mod tests {
 
     /// A normal 16-bit float in [0, 1], or 0.
     fn is_half(value: f32) -> bool {
-        value == 0.0 || value >= 1.0 / 16384.0 && value <= 1.0 && value.to_bits() & 0x1fff == 0
+        value == 0.0 || (1.0 / 16384.0..=1.0).contains(&value) && value.to_bits() & 0x1fff == 0
     }
 
     #[test]
