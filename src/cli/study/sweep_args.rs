@@ -110,7 +110,7 @@ impl ProtocolArgs {
         counters: bool,
         flicker_frames: u32,
     ) -> Result<Protocol> {
-        if !(self.seconds > 0.0) {
+        if self.seconds.is_nan() || self.seconds <= 0.0 {
             return Err(Error::Invalid("--seconds is more than 0".into()));
         }
         Ok(Protocol {
