@@ -12,6 +12,7 @@ pub mod calibrate;
 pub mod calibration;
 pub mod compare;
 pub mod devices;
+mod load_args;
 pub mod plan;
 mod progress;
 pub mod reference;

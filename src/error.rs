@@ -7,13 +7,13 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}", shortened(path.display()))]
     Io {
         path: PathBuf,
         source: std::io::Error,
     },
     /// A file was read but its contents are not what they should be.
-    #[error("{}: {message}", path.display())]
+    #[error("{}: {}", shortened(path.display()), shortened(message))]
     Parse { path: PathBuf, message: String },
     /// A setting, a light, a camera or a size that cannot be rendered.
     #[error("{0}")]
@@ -22,7 +22,7 @@ pub enum Error {
     #[error("{0}")]
     Unsupported(String),
     /// A Vulkan call failed; `call` names the call and the object.
-    #[error("{call} failed: {result}")]
+    #[error("{call} failed: {result}{}", advice(*result))]
     Vulkan {
         call: String,
         result: ash::vk::Result,
@@ -36,6 +36,35 @@ pub enum Error {
     /// The validation layer reported warnings or errors.
     #[error("the validation layer reported {} message(s), the first: {}", .0.len(), .0[0])]
     Validation(Vec<String>),
+}
+
+/// What to do about a failed call, where that is known.
+fn advice(result: ash::vk::Result) -> &'static str {
+    match result {
+        ash::vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | ash::vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
+            "; choose a smaller --map or --size, or close other programs"
+        }
+        ash::vk::Result::ERROR_DEVICE_LOST => {
+            "; the device is lost: its driver gave up, or it was reset; open it again, and if that repeats, update \
+             the driver"
+        }
+        _ => "",
+    }
+}
+
+/// [character] More of a message or a path is left out from its middle: they quote files, which may hold anything.
+const LONGEST: usize = 400;
+
+fn shortened(text: impl ToString) -> String {
+    let text = text.to_string();
+    let place = |index| text.char_indices().nth(index).map(|(at, _)| at);
+    let count = text.chars().count();
+    match (place(LONGEST / 2), place(count.saturating_sub(LONGEST / 2))) {
+        (Some(head), Some(tail)) if count > LONGEST => {
+            format!("{} … {}", &text[..head], &text[tail..])
+        }
+        _ => text,
+    }
 }
 
 pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -1,6 +1,12 @@
 //! The command line.
 
 mod cli;
+#[cfg(test)]
+#[path = "../tests/support/faults.rs"]
+mod faults;
+#[cfg(test)]
+#[path = "../tests/support/slow.rs"]
+mod slow;
 
 use std::process::ExitCode;
 

@@ -8,6 +8,8 @@ mod survey;
 mod text;
 mod views;
 
+use std::sync::Arc;
+
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
@@ -103,7 +105,7 @@ pub struct ViewPlan {
     pub view: View,
     pub variant: Variant,
     /// Sector table of a sub-light that a disc's rim cuts.
-    pub sectors: Option<Vec<f32>>,
+    pub sectors: Option<Arc<[f32]>>,
 }
 
 /// Which pipelines a view needs.

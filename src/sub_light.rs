@@ -1,5 +1,8 @@
 //! A light cut into split × split sub-lights (`algorithm.md` §1, §3).
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use glam::{DVec2, DVec3};
 
 use crate::scene::{AreaLight, LightShape};
@@ -16,8 +19,23 @@ pub struct SubLight {
     pub extent: (DVec2, DVec2),
     /// [half sizes] Centre and radius of the disc that bounds it; None = the box alone does.
     pub rim: Option<(DVec2, f64)>,
+    /// [half sizes²] Area swept from direction 0 up to each of `SECTOR_STEPS` + 1 equally spaced perimeter
+    /// parameters, 0 to 8; empty without a rim.
+    pub sectors: Arc<[f32]>,
     /// [half sizes²] Area; its weight among the light's parts, which all have the same half sizes.
     pub area: f64,
+}
+
+/// What of a cell of a light's grid lies in the light, in half sizes of the cell.
+#[derive(Clone)]
+struct Cell {
+    /// From the middle of the light to that of the cell.
+    middle: DVec2,
+    /// From the middle of the cell to the centre of what is left of it.
+    shift: DVec2,
+    rim: Option<(DVec2, f64)>,
+    sectors: Arc<[f32]>,
+    area: f64,
 }
 
 /// The light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
@@ -29,31 +47,70 @@ pub fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {
     let (u, v, _) = light.frame();
     let (half_u, half_v) = light.half_size();
     let half_size = DVec2::new(half_u, half_v) / f64::from(split);
-    let cells = (0..split).flat_map(|row| (0..split).map(move |column| (column, row)));
-    cells
-        .filter_map(|(column, row)| {
-            // [half sizes of the part] The cell's centre, seen from the light's.
-            let cell =
-                DVec2::new(f64::from(2 * column + 1), f64::from(2 * row + 1)) - f64::from(split);
-            let shape = match light.shape {
-                LightShape::Rect { .. } => Some((DVec2::ZERO, None)),
-                LightShape::Disc { .. } => cut_by_disc(cell, f64::from(split)),
-            };
-            let (shift, rim) = shape?;
-            let at = (cell + shift) * half_size;
-            let mut part = SubLight {
-                center: light.center + u * at.x + v * at.y,
-                half_size,
-                extent: (DVec2::NEG_ONE - shift, DVec2::ONE - shift),
-                rim,
-                area: 4.0,
-            };
-            if rim.is_some() {
-                part.area = part.sectors()[SECTOR_STEPS as usize].into();
-            }
-            (part.area > 1e-6).then_some(part)
-        })
-        .collect()
+    let cells = match light.shape {
+        LightShape::Rect { .. } => grid(split).map(Cell::whole).collect::<Arc<[_]>>(),
+        LightShape::Disc { .. } => cells_of_disc(split),
+    };
+    let part = |cell: &Cell| {
+        let at = (cell.middle + cell.shift) * half_size;
+        SubLight {
+            center: light.center + u * at.x + v * at.y,
+            half_size,
+            extent: (DVec2::NEG_ONE - cell.shift, DVec2::ONE - cell.shift),
+            rim: cell.rim,
+            sectors: cell.sectors.clone(),
+            area: cell.area,
+        }
+    };
+    cells.iter().map(part).collect()
+}
+
+/// The middles of the cells of a grid, in half sizes of a cell seen from the middle of all.
+fn grid(split: u32) -> impl Iterator<Item = DVec2> {
+    let middle = move |column: u32, row: u32| {
+        DVec2::new(f64::from(2 * column + 1), f64::from(2 * row + 1)) - f64::from(split)
+    };
+    (0..split).flat_map(move |row| (0..split).map(move |column| middle(column, row)))
+}
+
+/// The cells of a disc, which are the same for all discs: found once for each split, as their tables take
+/// half a millisecond each.
+fn cells_of_disc(split: u32) -> Arc<[Cell]> {
+    static FOUND: Mutex<BTreeMap<u32, Arc<[Cell]>>> = Mutex::new(BTreeMap::new());
+    let mut found = FOUND.lock().unwrap_or_else(PoisonError::into_inner);
+    let find = || {
+        grid(split)
+            .filter_map(|middle| Cell::of_disc(middle, f64::from(split)))
+            .collect()
+    };
+    found.entry(split).or_insert_with(find).clone()
+}
+
+impl Cell {
+    fn whole(middle: DVec2) -> Self {
+        Self {
+            middle,
+            shift: DVec2::ZERO,
+            rim: None,
+            sectors: Arc::default(),
+            area: 4.0,
+        }
+    }
+
+    /// None: nothing of the cell lies in the disc.
+    fn of_disc(middle: DVec2, radius: f64) -> Option<Self> {
+        let (shift, rim) = cut_by_disc(middle, radius)?;
+        let mut cell = Self {
+            shift,
+            rim,
+            ..Self::whole(middle)
+        };
+        if rim.is_some() {
+            cell.sectors = cell.sweep().into();
+            cell.area = cell.sectors[SECTOR_STEPS as usize].into();
+        }
+        (cell.area > 1e-6).then_some(cell)
+    }
 }
 
 /// Where the centre of a cell of a disc's grid has to move, and the disc seen from there. None: nothing
@@ -89,13 +146,15 @@ impl SubLight {
             half_size: DVec2::ONE,
             extent: (DVec2::ZERO, DVec2::ZERO),
             rim: None,
+            sectors: Arc::default(),
             area: 4.0,
         }
     }
+}
 
-    /// [half sizes²] Area swept from direction 0 up to each of `SECTOR_STEPS` + 1 equally spaced perimeter
-    /// parameters, 0 to 8.
-    pub fn sectors(&self) -> Vec<f32> {
+impl Cell {
+    /// See [`SubLight::sectors`].
+    fn sweep(&self) -> Vec<f32> {
         const SUBSTEPS: u32 = 8;
         let mut table = vec![0.0f32];
         let mut swept = 0.0;
@@ -123,7 +182,7 @@ impl SubLight {
 
     /// How many times `direction` reaches from the centre to the border.
     fn border(&self, direction: DVec2) -> f64 {
-        let (lower, upper) = self.extent;
+        let (lower, upper) = (DVec2::NEG_ONE - self.shift, DVec2::ONE - self.shift);
         let mut reach = f64::INFINITY;
         for axis in 0..2 {
             if direction[axis] != 0.0 {
@@ -194,8 +253,7 @@ mod tests {
     #[test]
     fn the_sectors_of_a_whole_disc_are_angles() {
         let part = &sub_lights(&disc(1.0), 1)[0];
-        let table = part.sectors();
-        for (i, swept) in table.iter().enumerate() {
+        for (i, swept) in part.sectors.iter().enumerate() {
             let parameter = 8.0 * i as f64 / f64::from(SECTOR_STEPS);
             let q = direction(parameter);
             let angle = if i as u32 == SECTOR_STEPS {

@@ -16,6 +16,7 @@ const LIMITS: Limits = Limits {
     image_bytes: 1 << 31,
     buffer_bytes: 1 << 27,
     memory_bytes: 1 << 33,
+    allowed_bytes: u64::MAX,
     loop_turns: 60000,
 };
 
@@ -170,10 +171,37 @@ fn limits_are_told_with_the_knob_to_turn() {
     };
     let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
     assert!(error.to_string().contains("--map"), "{error}");
-    let limits = Limits {
-        memory_bytes: 1 << 20,
-        ..LIMITS
-    };
-    let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
-    assert!(error.to_string().contains("choose a smaller"), "{error}");
+    for (limits, source) in [
+        (
+            Limits {
+                memory_bytes: 1 << 20,
+                ..LIMITS
+            },
+            "the device has 1.0 MiB; choose a smaller --map or --size",
+        ),
+        (
+            Limits {
+                allowed_bytes: 1 << 20,
+                ..LIMITS
+            },
+            "--max-memory allows 1.0 MiB; choose a smaller --map or --size, or raise --max-memory",
+        ),
+    ] {
+        let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
+        assert!(error.to_string().contains(source), "{error}");
+    }
+    // Exactly what it takes is enough, and a byte less is not.
+    let peak = plan(&scene("plate"), EVERYTHING, &LIMITS, false)
+        .unwrap()
+        .peak_bytes();
+    for (allowed_bytes, fits) in [(peak, true), (peak - 1, false)] {
+        let limits = Limits {
+            allowed_bytes,
+            ..LIMITS
+        };
+        assert_eq!(
+            plan(&scene("plate"), EVERYTHING, &limits, false).is_ok(),
+            fits
+        );
+    }
 }

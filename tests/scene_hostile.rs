@@ -81,12 +81,43 @@ fn paths_stay_in_the_folder() {
         assert!(message.contains("refuses to read"), "{uri:?}: {message}");
     }
     // Encoded twice, it is an odd name in the same folder.
-    gltf.json["buffers"][0]["uri"] = "%252e%252e%252fdata.bin".into();
-    std::fs::write(&path, serde_json::to_vec(&gltf.json).unwrap()).unwrap();
-    let message = load(&path, &LoadOptions::default())
-        .unwrap_err()
-        .to_string();
+    let mut load_uri = |uri: &str, outside_paths| {
+        gltf.json["buffers"][0]["uri"] = uri.into();
+        std::fs::write(&path, serde_json::to_vec(&gltf.json).unwrap()).unwrap();
+        let options = LoadOptions {
+            outside_paths,
+            ..LoadOptions::default()
+        };
+        load(&path, &options).map_err(|error| error.to_string())
+    };
+    let message = load_uri("%252e%252e%252fdata.bin", false).unwrap_err();
     assert!(message.contains("No such file"), "{message}");
+    // Where it is allowed, files may lie anywhere on this machine, and nowhere else.
+    let url = format!("file://{absolute}");
+    for uri in [
+        "../data.bin",
+        "%2e%2e/data.bin",
+        "link.bin",
+        &absolute,
+        &url,
+    ] {
+        let message = load_uri(uri, false).unwrap_err();
+        assert!(message.contains("--allow-outside-paths"), "{message}");
+        assert_eq!(load_uri(uri, true).unwrap().triangles.len(), 1, "{uri:?}");
+    }
+    for uri in [
+        "https://example.com/data.bin",
+        "file://host/data.bin",
+        "C:/data.bin",
+        "..",
+        "%00",
+    ] {
+        let message = load_uri(uri, true).unwrap_err();
+        assert!(
+            message.contains("names no file on this machine"),
+            "{uri:?}: {message}"
+        );
+    }
 }
 
 #[test]
@@ -215,11 +246,14 @@ fn huge_counts_are_refused_quickly() {
     for count in [1u64 << 40, u64::MAX] {
         let mut gltf = Gltf::triangle();
         gltf.json["accessors"][0] = json!({"componentType": F32, "type": "VEC3", "count": count});
-        assert!(gltf.error().contains("limit on triangles"));
+        assert!(
+            gltf.error()
+                .contains("limit on triangles (instances counted); raise --max-triangles")
+        );
     }
     // As many as the limit allows cost time, but no memory.
     let mut gltf = Gltf::triangle();
-    gltf.json["accessors"][0] = json!({"componentType": F32, "type": "VEC3", "count": 1 << 24});
+    gltf.json["accessors"][0] = json!({"componentType": F32, "type": "VEC3", "count": 3 << 21});
     assert!(gltf.load().unwrap().positions.is_empty());
     // Instances multiply: 1000 nodes, each with 100,000 empty primitives.
     let mut gltf = Gltf::new();
@@ -229,7 +263,8 @@ fn huge_counts_are_refused_quickly() {
     for _ in 0..1000 {
         gltf.node(json!({"mesh": 0}));
     }
-    assert!(gltf.error().contains("limit on primitives"));
+    let message = gltf.error();
+    assert!(message.contains("mesh 0: expands to far more"), "{message}");
     assert!(
         start.elapsed() < Duration::from_secs(20),
         "{:?}",
@@ -269,10 +304,6 @@ fn textures_have_limits() {
             "{message}"
         );
     }
-    // A small file that claims to be huge.
-    let mut bomb = png(2, 2, &[[255; 4]; 4]);
-    bomb[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
-    assert!(textured_triangle(&bomb).error().contains("image 0"));
     assert!(
         textured_triangle(b"GIF89a-----")
             .error()
@@ -282,4 +313,100 @@ fn textures_have_limits() {
     assert!(gltf.error().contains("neither a uri nor a buffer view"));
     gltf.json["images"][0] = json!({"uri": "data:image/png;base64,!!!"});
     assert!(gltf.error().contains("not valid base64"));
+}
+
+/// A picture of 2×2 texels that claims to be larger, and is right in everything else.
+fn bomb(side: u32) -> Gltf {
+    let mut bomb = png(2, 2, &[[255; 4]; 4]);
+    bomb[16..20].copy_from_slice(&side.to_be_bytes());
+    bomb[20..24].copy_from_slice(&side.to_be_bytes());
+    let checksum = crc32fast::hash(&bomb[12..29]);
+    bomb[29..33].copy_from_slice(&checksum.to_be_bytes());
+    textured_triangle(&bomb)
+}
+
+/// Small files that would take a lot of memory are refused, each by a limit that can be raised.
+#[test]
+fn bombs_are_refused() {
+    let wide = Limits {
+        max_texture_side: 65535,
+        ..Limits::default()
+    };
+    let many = Limits {
+        max_texels: u64::MAX,
+        ..wide.clone()
+    };
+    let trusted = Limits {
+        max_expansion: u64::MAX,
+        ..many.clone()
+    };
+    for (side, limits, knob) in [
+        (65535, Limits::default(), "--max-texture-side"),
+        (65535, wide, "--max-texels"),
+        (65535, many, "--max-expansion"),
+        (10000, Limits::default(), "--max-expansion"),
+    ] {
+        let options = LoadOptions {
+            limits,
+            ..LoadOptions::default()
+        };
+        let message = bomb(side).load_with(&options).unwrap_err().to_string();
+        assert!(message.contains(knob), "{side}: {message}");
+    }
+    // Where it is trusted, it is found to be no picture of that size.
+    let options = LoadOptions {
+        limits: trusted,
+        ..LoadOptions::default()
+    };
+    let message = bomb(10000).load_with(&options).unwrap_err().to_string();
+    assert!(message.contains("cannot be decoded"), "{message}");
+}
+
+/// Instances and files that are named over and over multiply what a small file holds.
+#[test]
+fn repetition_is_refused() {
+    let limits = Limits {
+        max_expansion: 1,
+        ..Limits::default()
+    };
+    let options = LoadOptions {
+        limits,
+        ..LoadOptions::default()
+    };
+    let mut gltf = Gltf::new();
+    let corners: Vec<[f32; 3]> = (0..30_000)
+        .map(|i| [i as f32, (i * i % 7) as f32, 0.0])
+        .collect();
+    let position = gltf.positions(&corners);
+    gltf.mesh(json!({"attributes": {"POSITION": position}}));
+    for _ in 0..10_000 {
+        gltf.node(json!({"mesh": 0}));
+    }
+    let message = gltf.error();
+    assert!(
+        message.contains("mesh 0") && message.contains("--max-expansion"),
+        "{message}"
+    );
+
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.bin"), vec![0; 1 << 20]).unwrap();
+    let mut gltf = Gltf::triangle();
+    for index in 0..300 {
+        let buffer = gltf.push(
+            "buffers",
+            json!({"uri": "./".repeat(index) + "a.bin", "byteLength": 1 << 20}),
+        );
+        let view = gltf.push("bufferViews", json!({"buffer": buffer, "byteLength": 36}));
+        let accessor =
+            json!({"bufferView": view, "componentType": F32, "type": "VEC3", "count": 3});
+        let position = gltf.push("accessors", accessor);
+        gltf.mesh(json!({"attributes": {"POSITION": position}}));
+    }
+    let path = folder.path().join("scene.gltf");
+    std::fs::write(&path, gltf.to_gltf()).unwrap();
+    let message = load(&path, &options).unwrap_err().to_string();
+    assert!(
+        message.contains("buffer ") && message.contains("--max-expansion"),
+        "{message}"
+    );
 }

@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use halfshade::cpu::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
 use halfshade::image::{check_writable, write_exr};
-use halfshade::shot::{Overrides, Shot};
+use halfshade::shot::Shot;
 
 use halfshade::{Error, Result};
 
-use super::{on_interrupt, parse_size, print, print_notes, progress};
+use super::load_args::LoadArgs;
+use super::{on_interrupt, print, print_notes, progress};
 
 /// Traces the true visibility of a light with rays, on the CPU.
 ///
@@ -28,12 +29,11 @@ pub struct Args {
     /// Another seed gives independent noise, the same seed the same image
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
-    /// Size of the image in pixels, each side 1 to 32768 [default: the shot's]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    size: Option<(u32, u32)>,
     /// Which of the shot's lights, counted from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     light: usize,
+    #[command(flatten)]
+    load: LoadArgs,
 }
 
 /// # Errors
@@ -41,10 +41,7 @@ pub struct Args {
 /// file is left.
 pub fn run(args: &Args) -> Result<()> {
     check_writable(&args.output)?;
-    let overrides = Overrides {
-        size: args.size,
-        ..Overrides::default()
-    };
+    let overrides = args.load.overrides();
     let shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
     print_notes(&shot);
     let cancel = on_interrupt()?;

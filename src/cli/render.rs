@@ -192,3 +192,76 @@ impl Products {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::faults::{self, with_fault};
+    use crate::slow;
+
+    #[derive(clap::Parser)]
+    struct Program {
+        #[command(flatten)]
+        render: Args,
+    }
+
+    /// Names and contents of all files in a folder.
+    fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+        let entries = std::fs::read_dir(folder).expect("the folder is there");
+        let paths = entries.map(|entry| entry.expect("it can be listed").path());
+        let mut files: Vec<_> = paths
+            .map(|path| {
+                let bytes = std::fs::read(&path).expect("it can be read");
+                (path, bytes)
+            })
+            .collect();
+        files.sort();
+        files
+    }
+
+    /// Whichever call fails, no file appears and none changes. `HALFSHADE_SLOW=1` fails every call.
+    #[test]
+    fn a_failure_leaves_no_file() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = |name: &str| folder.path().join(name).display().to_string();
+        let shot = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/plate.json");
+        let (picture, visibility, stats) = (file("a.png"), file("a.exr"), file("a.json"));
+        let arguments = [
+            "render",
+            shot,
+            "--technique",
+            "hard",
+            "--size",
+            "16x16",
+            "--map",
+            "16",
+            "-o",
+            &picture,
+            "--visibility",
+            &visibility,
+            "--stats",
+            &stats,
+        ];
+        let mut program = Program::parse_from(arguments);
+        program.render.device.loader = Some(faults::loader);
+        let (result, called) = with_fault(None, || run(&program.render));
+        result.expect("nothing failed");
+        assert_eq!(contents(folder.path()).len(), 3);
+        for name in ["a.exr", "a.json"] {
+            std::fs::remove_file(file(name)).expect("it is there");
+        }
+        std::fs::write(&picture, "old").expect("it can be written");
+        let before = contents(folder.path());
+        // A picture without a cache is as good.
+        let fatal = |&index: &usize| called[index] != "vkCreatePipelineCache";
+        let step = slow::cases(16, 1) as usize;
+        for index in (0..called.len()).filter(fatal).step_by(step) {
+            let (result, _) = with_fault(Some(index), || run(&program.render));
+            let (error, name) = (result.expect_err("it failed").to_string(), called[index]);
+            assert!(error.contains(name), "{name} failed, not: {error}");
+            assert!(contents(folder.path()) == before, "{name}, call {index}");
+        }
+    }
+}

@@ -8,7 +8,8 @@ use halfshade::shot::{Leaf, Mapping, Occluders, Overrides, Pattern, Settings, Sh
 use halfshade::{Error, Result};
 
 use super::calibration::Calibration;
-use super::{parse_size, print_notes, progress};
+use super::load_args::LoadArgs;
+use super::{print_notes, progress};
 
 /// What to render and how.
 #[derive(Debug, clap::Args)]
@@ -77,9 +78,6 @@ pub struct ShotArgs {
     /// Count pixels, packets, nodes and edges (takes time)
     #[arg(long)]
     pub counters: bool,
-    /// Size of the image in pixels, each side 1 to 32768 [default: the shot's]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    size: Option<(u32, u32)>,
     /// Make the scene's own point and spot lights discs of this radius, in scene units, 0 or more
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
@@ -89,16 +87,18 @@ pub struct ShotArgs {
     /// Which camera of the glTF, counted from 0; a shot file's own camera goes first [default: 0]
     #[arg(long, value_name = "N")]
     camera: Option<usize>,
+    #[command(flatten)]
+    load: LoadArgs,
 }
 
 impl ShotArgs {
     /// Loads the shot, with the flags' settings; what the flags leave open comes from `calibration`.
     pub fn load(&self, calibration: &Calibration) -> Result<Shot> {
         let overrides = Overrides {
-            size: self.size,
             radius: self.radius,
             scene_index: self.scene,
             camera_index: self.camera,
+            ..self.load.overrides()
         };
         // Flags are cheaper to check than scenes to load.
         let settings = self.settings(calibration);
@@ -153,6 +153,26 @@ pub struct DeviceArgs {
     /// Run under the Vulkan validation layer; any warning or error fails the run
     #[arg(long)]
     pub validate: bool,
+    /// Most memory that a frame may take on the device, such as 512MiB or 2GiB [default: all that it has]
+    #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
+    max_memory: Option<u64>,
+    /// For tests, which put themselves between the program and Vulkan.
+    #[arg(skip)]
+    pub loader: Option<ash::vk::PFN_vkGetInstanceProcAddr>,
+}
+
+/// A number of bytes, or of KiB, MiB, GiB or TiB.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let units = ["", "KiB", "MiB", "GiB", "TiB"];
+    let unit = units
+        .iter()
+        .position(|unit| *unit == text[digits.len()..].trim());
+    unit.zip(digits.parse::<u64>().ok())
+        .and_then(|(unit, number)| number.checked_mul(1 << (10 * unit)))
+        .ok_or_else(|| {
+            "a size is written 512MiB, or with KiB, GiB, TiB or nothing for bytes".to_owned()
+        })
 }
 
 impl DeviceArgs {
@@ -161,6 +181,8 @@ impl DeviceArgs {
             device: self.device.clone(),
             validate: self.validate,
             cache_folder: super::project_folders().map(|folders| folders.cache_dir().to_path_buf()),
+            max_memory: self.max_memory,
+            loader: self.loader,
         })
     }
 

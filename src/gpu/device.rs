@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 use ash::{ext, vk};
+use gpu_allocator::AllocationSizes;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::physical::{DeviceInfo, pick};
@@ -24,6 +25,11 @@ pub struct Options {
     pub validate: bool,
     /// Folder for the pipeline cache, which is read at opening and written at closing.
     pub cache_folder: Option<PathBuf>,
+    /// [byte] Plans that take more are refused. None: those that take more than the device has.
+    pub max_memory: Option<u64>,
+    /// Where all Vulkan functions come from, which must stay there while the device is open. None: the
+    /// system's loader.
+    pub loader: Option<vk::PFN_vkGetInstanceProcAddr>,
 }
 
 /// An open device. Everything that lives on it keeps it open.
@@ -55,7 +61,14 @@ pub(super) fn failed(call: &str) -> impl FnOnce(vk::Result) -> Error + '_ {
     }
 }
 
-pub(super) fn load() -> Result<ash::Entry> {
+pub(super) fn load(loader: Option<vk::PFN_vkGetInstanceProcAddr>) -> Result<ash::Entry> {
+    if let Some(get_instance_proc_addr) = loader {
+        let functions = ash::StaticFn {
+            get_instance_proc_addr,
+        };
+        // SAFETY: whoever gives a loader promises that it is one and stays there.
+        return Ok(unsafe { ash::Entry::from_static_fn(functions) });
+    }
     // SAFETY: loading the system's Vulkan loader; it stays loaded while the entry lives.
     unsafe { ash::Entry::load() }.map_err(|e| {
         Error::Unsupported(format!(
@@ -127,7 +140,7 @@ pub(super) fn create_instance(
 impl Gpu {
     /// Opens a device. Errors: no Vulkan, no such device, something required is missing, or a call failed.
     pub fn open(options: &Options) -> Result<Arc<Self>> {
-        let entry = load()?;
+        let entry = load(options.loader)?;
         let messages = Messages::default();
         let (instance, debug) = create_instance(&entry, options.validate, &messages)?;
         let guard = InstanceGuard(Some(instance));
@@ -167,7 +180,10 @@ impl Gpu {
             }
         };
         let tick_ns = tick_ns(instance, physical, family);
-        let limits = requirements::limits(instance, physical);
+        let limits = Limits {
+            allowed_bytes: options.max_memory.unwrap_or(u64::MAX),
+            ..requirements::limits(instance, physical)
+        };
         let debug = debug.then(|| ext::debug_utils::Device::new(instance, &device));
         // SAFETY: the family has at least one queue.
         let queue = unsafe { device.get_device_queue(family, 0) };
@@ -204,6 +220,14 @@ impl Gpu {
     /// the last ones come when it is destroyed.
     pub fn validation_messages(&self) -> Arc<Mutex<Vec<String>>> {
         self.messages.clone()
+    }
+
+    /// [byte] Memory that what lives on the device takes.
+    pub fn memory_in_use(&self) -> u64 {
+        let allocator = self.allocator.lock();
+        allocator.map_or(0, |allocator| {
+            allocator.generate_report().total_allocated_bytes
+        })
     }
 
     /// Names an object for the validation layer and for frame debuggers.
@@ -308,7 +332,8 @@ fn create_allocator(
         physical_device: physical,
         debug_settings: Default::default(),
         buffer_device_address: false,
-        allocation_sizes: Default::default(),
+        // A large resource has a block of its own; what small ones share shall not count against a budget.
+        allocation_sizes: AllocationSizes::new(16 << 20, 8 << 20),
     })
     .map_err(|error| Error::Memory {
         resource: "the allocator".into(),

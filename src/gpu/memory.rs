@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::{AllocationError, MemoryLocation};
 
 use super::device::{Gpu, failed};
 use super::recorder::Recorder;
@@ -162,10 +162,11 @@ impl Buffer {
             };
             let requirements = gpu.device.get_buffer_memory_requirements(raw);
             let allocation = allocate(gpu, name, requirements, location, true)?;
-            gpu.device
-                .bind_buffer_memory(raw, allocation.memory(), allocation.offset())
-                .map_err(failed(&format!("vkBindBufferMemory of {name}")))?;
+            let (memory, offset) = (allocation.memory(), allocation.offset());
             buffer.allocation = Some(allocation);
+            gpu.device
+                .bind_buffer_memory(raw, memory, offset)
+                .map_err(failed(&format!("vkBindBufferMemory of {name}")))?;
             Ok(buffer)
         }
     }
@@ -248,10 +249,11 @@ impl Image {
             };
             let requirements = gpu.device.get_image_memory_requirements(raw);
             let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, false)?;
-            gpu.device
-                .bind_image_memory(raw, allocation.memory(), allocation.offset())
-                .map_err(failed(&format!("vkBindImageMemory of {name}")))?;
+            let (memory, offset) = (allocation.memory(), allocation.offset());
             image.allocation = Some(allocation);
+            gpu.device
+                .bind_image_memory(raw, memory, offset)
+                .map_err(failed(&format!("vkBindImageMemory of {name}")))?;
             image.view = image.create_view()?;
             Ok(image)
         }
@@ -323,7 +325,17 @@ fn allocate(
             linear,
             allocation_scheme: AllocationScheme::GpuAllocatorManaged,
         })
-        .map_err(|error| lost(error.to_string()))
+        .map_err(|error| match error {
+            AllocationError::OutOfMemory => {
+                let result = vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
+                failed(&format!("vkAllocateMemory of {name}"))(result)
+            }
+            AllocationError::FailedToMap(_) => {
+                let result = vk::Result::ERROR_MEMORY_MAP_FAILED;
+                failed(&format!("vkMapMemory of {name}"))(result)
+            }
+            other => lost(other.to_string()),
+        })
 }
 
 fn release(gpu: &Gpu, allocation: Option<Allocation>) {

@@ -72,7 +72,7 @@ fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo 
 
 /// Every Vulkan device of the system, able to run the engine or not.
 pub fn list_devices() -> Result<Vec<DeviceInfo>> {
-    let entry = load()?;
+    let entry = load(None)?;
     let (instance, _) = create_instance(&entry, false, &Messages::default())?;
     // SAFETY: the instance is destroyed after its last use.
     unsafe {

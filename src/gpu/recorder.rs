@@ -90,8 +90,11 @@ impl Recorder {
     pub fn begin(&mut self) -> Result<()> {
         self.names.clear();
         let device = &self.gpu.device;
-        // SAFETY: the command buffer is not pending: `submit_and_wait` waits.
+        // SAFETY: neither the command buffer nor the fence is pending: `submit_and_wait` waits.
         unsafe {
+            device
+                .reset_fences(&[self.fence])
+                .map_err(failed("vkResetFences"))?;
             device
                 .reset_command_pool(self.pool, Default::default())
                 .map_err(failed("vkResetCommandPool"))?;
@@ -301,10 +304,11 @@ impl Recorder {
             drop(submission);
             device
                 .wait_for_fences(&[self.fence], true, u64::MAX)
-                .map_err(failed("vkWaitForFences"))?;
-            device
-                .reset_fences(&[self.fence])
-                .map_err(failed("vkResetFences"))?;
+                .map_err(|result| {
+                    // Nothing may be pending when the error is told; on a lost device this returns at once.
+                    let _ = device.device_wait_idle();
+                    failed("vkWaitForFences")(result)
+                })?;
         }
         self.timings()
     }

@@ -15,6 +15,8 @@ pub struct Limits {
     pub buffer_bytes: u64,
     /// [byte] Memory of the largest device-local heap.
     pub memory_bytes: u64,
+    /// [byte] Memory that a frame may take, however much there is.
+    pub allowed_bytes: u64,
     /// [turn] Loop turns after which the driver ends all loops of an invocation, whatever their conditions.
     pub loop_turns: u32,
 }
@@ -146,6 +148,7 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
             .map(|heap| heap.size)
             .max()
             .unwrap_or(0),
+        allowed_bytes: u64::MAX,
         loop_turns: match driver {
             vk::DriverId::MESA_LLVMPIPE => LAVAPIPE_LOOP_TURNS,
             _ => u32::MAX,

@@ -1,11 +1,27 @@
 //! The sizes of a frame's resources, against what the device allows.
 
 use super::Plan;
+use super::text::human;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, SECTOR_STEPS, View};
 use crate::shot::Shot;
 use crate::technique::{Recipe, Work};
+
+/// Resources that the host fills or reads, by way of memory that it sees.
+const COPIED: [&str; 11] = [
+    "positions",
+    "triangles",
+    "triangle_surfaces",
+    "surfaces",
+    "texcoords",
+    "vertex_surfaces",
+    "texels",
+    "views",
+    "sectors",
+    "visibility",
+    "picture",
+];
 
 impl Plan {
     pub(super) fn list_resources(&mut self, shot: &Shot) {
@@ -116,9 +132,18 @@ impl Plan {
         self.resources.retain(|&(_, bytes)| bytes > 0);
     }
 
-    /// [byte] Of all resources; they live as long as the frame, so this is the peak.
+    /// [byte] Of all resources; they live as long as the frame.
     pub fn memory_bytes(&self) -> u64 {
         self.resources.iter().map(|&(_, bytes)| bytes).sum()
+    }
+
+    /// [byte] Of all resources and of the largest copy that goes to the device or comes back.
+    pub fn peak_bytes(&self) -> u64 {
+        let copied = self
+            .resources
+            .iter()
+            .filter(|(name, _)| COPIED.contains(name));
+        self.memory_bytes() + copied.map(|&(_, bytes)| bytes).max().unwrap_or(0)
     }
 
     pub(super) fn check(&self, limits: &Limits) -> Result<()> {
@@ -152,13 +177,33 @@ impl Plan {
                 )));
             }
         }
-        if self.memory_bytes() > limits.memory_bytes {
-            return Err(Error::Unsupported(format!(
-                "the frame takes {} bytes and the device has {}; choose a smaller --map or --size",
-                self.memory_bytes(),
-                limits.memory_bytes
-            )));
+        self.check_peak(limits)
+    }
+
+    fn check_peak(&self, limits: &Limits) -> Result<()> {
+        let (peak, most) = (
+            self.peak_bytes(),
+            limits.memory_bytes.min(limits.allowed_bytes),
+        );
+        if peak <= most {
+            return Ok(());
         }
-        Ok(())
+        let source = match limits.allowed_bytes < limits.memory_bytes {
+            true => "--max-memory allows",
+            false => "the device has",
+        };
+        let largest = self.resources.iter().max_by_key(|(_, bytes)| *bytes);
+        let (name, bytes) = largest.copied().unwrap_or_default();
+        Err(Error::Unsupported(format!(
+            "the frame takes {} at its peak, {} of it for {name}, and {source} {}; choose a smaller --map or --size{}",
+            human(peak),
+            human(bytes),
+            human(most),
+            if limits.allowed_bytes < limits.memory_bytes {
+                ", or raise --max-memory"
+            } else {
+                ""
+            }
+        )))
     }
 }

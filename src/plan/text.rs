@@ -144,7 +144,7 @@ fn plural(count: usize, what: &str) -> String {
 }
 
 /// A size for people: the largest binary unit that leaves at least 1.
-fn human(bytes: u64) -> String {
+pub(super) fn human(bytes: u64) -> String {
     let (mut size, mut unit) = (bytes as f64, "B");
     for larger in ["KiB", "MiB", "GiB", "TiB"] {
         if size < 1024.0 {

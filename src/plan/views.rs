@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Variant, ViewPlan};
 use crate::scene::{AreaLight, LightShape};
-use crate::shared::{self, FRONT_REACH, SECTOR_STEPS, View};
+use crate::shared::{self, FRONT_REACH, View};
 use crate::shot::Shot;
 use crate::sub_light::SubLight;
 
@@ -30,10 +30,7 @@ pub fn view_plan(
         [center.x as f32, center.y as f32, radius as f32]
     });
     let (half, (lower, upper)) = (part.half_size, part.extent);
-    let sectors = part.rim.map(|_| part.sectors());
-    let area = sectors
-        .as_ref()
-        .map_or(part.area as f32, |table| table[SECTOR_STEPS as usize]);
+    let area = part.area as f32;
     let view = View {
         center: array(part.center - shot.scene.origin),
         right: array(right),
@@ -66,7 +63,7 @@ pub fn view_plan(
             oblique: face != 0,
             accumulate,
         },
-        sectors,
+        sectors: part.rim.map(|_| part.sectors.clone()),
     }
 }
 
@@ -79,10 +76,6 @@ pub fn whole_light(
 ) -> shared::Light {
     let (u, v, n) = light.frame();
     let half = light.half_size();
-    let weight = |part: &SubLight| {
-        part.rim
-            .map_or(part.area as f32, |_| part.sectors()[SECTOR_STEPS as usize])
-    };
     shared::Light {
         center: (light.center - shot.scene.origin).as_vec3().into(),
         u: u.as_vec3().into(),
@@ -93,7 +86,7 @@ pub fn whole_light(
         // In the order in which the views add up, so that a fully hidden light is exactly so.
         weight_sum: parts
             .iter()
-            .map(weight)
+            .map(|part| part.area as f32)
             .fold(0.0, |sum, weight| sum + weight),
         radiance: radiance(shot, light),
         view_first,

@@ -122,7 +122,7 @@ fn create_views(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resul
         let mut view = planned.view;
         if let Some(table) = &planned.sectors {
             view.sector_first = sectors.len() as u32;
-            sectors.extend(table);
+            sectors.extend_from_slice(table);
         }
         views.push(view);
     }

@@ -4,7 +4,8 @@
 //! range is checked before it is sliced.
 
 use std::borrow::Cow;
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
@@ -16,6 +17,7 @@ use gltf::json::root::Get;
 use gltf::json::{Buffer, Index, Root, buffer};
 
 use super::file;
+use super::gltf::{Budget, LoadOptions};
 use crate::{Error, Result};
 
 /// The extensions whose meaning the loader knows; a file may require these and no others.
@@ -53,6 +55,10 @@ pub(super) struct Document<'a> {
     pub transforms: Vec<DAffine3>,
     binary: Option<Bytes<'a>>,
     buffers: Vec<OnceCell<Bytes<'a>>>,
+    outside_paths: bool,
+    budget: RefCell<Budget>,
+    /// The files beside it that were read.
+    read: RefCell<HashSet<PathBuf>>,
 }
 
 impl<'a> Document<'a> {
@@ -61,7 +67,7 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     /// When the bytes are no glTF 2.0 or the file requires an extension that is not known here.
-    pub fn parse(path: &'a Path, bytes: &'a [u8]) -> Result<Self> {
+    pub fn parse(path: &'a Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Self> {
         let (json, binary) = split(path, bytes)?;
         let not_gltf = |e| Error::parse(path, format!("is not a glTF file: {e}"));
         let root = Root::from_slice(&json).map_err(not_gltf)?;
@@ -82,8 +88,13 @@ impl<'a> Document<'a> {
                 ),
             ));
         }
+        let mut budget = Budget::new(&options.limits);
+        budget.earn(bytes.len());
         Ok(Self {
             path,
+            outside_paths: options.outside_paths,
+            budget: RefCell::new(budget),
+            read: RefCell::default(),
             transforms: exact.nodes.iter().map(exact::Node::transform).collect(),
             buffers: vec![OnceCell::new(); root.buffers.len()],
             root,
@@ -101,6 +112,19 @@ impl<'a> Document<'a> {
     /// An error about the contents of this file.
     pub fn error(&self, message: impl Into<String>) -> Error {
         Error::parse(self.path, message)
+    }
+
+    /// Takes memory for something that `user` asks for.
+    ///
+    /// # Errors
+    /// When the scene would take more than in proportion to its files.
+    pub fn spend(&self, bytes: u64, user: &str) -> Result<()> {
+        if self.budget.borrow_mut().spend(bytes) {
+            return Ok(());
+        }
+        Err(self.error(format!(
+            "{user}: expands to far more than the file holds; if it is to be trusted, raise --max-expansion"
+        )))
     }
 
     /// The object that `user` refers to.
@@ -165,7 +189,7 @@ impl<'a> Document<'a> {
     /// What a `data:` URI holds, or the first `limit` [byte] of the file that a relative URI names.
     ///
     /// # Errors
-    /// When the URI leaves the folder of the glTF, or the data cannot be read.
+    /// When the URI leaves the folder of the glTF and that is not allowed, or the data cannot be read.
     pub fn resource(&self, uri: &str, limit: u64, user: &str) -> Result<Vec<u8>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let Some((_, data)) = data.split_once(";base64,") else {
@@ -175,24 +199,41 @@ impl<'a> Document<'a> {
                 .decode(data)
                 .map_err(|e| self.error(format!("{user}: its data URI is not valid base64: {e}")));
         }
-        let Some(relative) = relative_path(uri) else {
+        let path = self.resource_path(uri, user)?;
+        let bytes = file::read_at_most(&path, limit)?;
+        // Buffers may name the same file over and over.
+        if self.read.borrow_mut().insert(path) {
+            self.budget.borrow_mut().earn(bytes.len());
+        }
+        self.spend(bytes.len() as u64, user)?;
+        Ok(bytes)
+    }
+
+    /// The file that a URI names, by its one real path.
+    fn resource_path(&self, uri: &str, user: &str) -> Result<PathBuf> {
+        let refused = |why: &str| {
             let short: String = uri.chars().take(80).collect();
-            return Err(self.error(format!(
-                "{user}: refuses to read {short:?}, which is not a path below the folder of the glTF"
-            )));
+            self.error(format!("{user}: refuses to read {short:?}, {why}"))
         };
+        let named =
+            NamedFile::new(uri).ok_or_else(|| refused("which names no file on this machine"))?;
         let folder = match self.path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        let path = folder.join(relative);
-        let real = |path: &Path| path.canonicalize().map_err(|e| Error::io(path, e));
-        if !real(&path)?.starts_with(real(folder)?) {
-            return Err(self.error(format!(
-                "{user}: refuses to read {uri:?}, a link out of the folder of the glTF"
-            )));
+        if !self.outside_paths && !named.is_below() {
+            return Err(refused(
+                "which is not a path below the folder of the glTF; if it is to be trusted, pass --allow-outside-paths",
+            ));
         }
-        file::read_at_most(&path, limit)
+        let real = |path: &Path| path.canonicalize().map_err(|e| Error::io(path, e));
+        let path = real(&folder.join(&named.path))?;
+        if !self.outside_paths && !path.starts_with(real(folder)?) {
+            return Err(refused(
+                "a link out of the folder of the glTF; if it is to be trusted, pass --allow-outside-paths",
+            ));
+        }
+        Ok(path)
     }
 }
 
@@ -217,22 +258,44 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Bytes<'a>, Option<Bytes<'a
     Ok((glb.json, glb.bin))
 }
 
-/// The path that a URI reference means, if it stays below the folder it starts from.
-fn relative_path(uri: &str) -> Option<PathBuf> {
-    // RFC 3986 §4.2: a colon in the first segment makes it a URL (or a Windows drive).
-    if uri.split('/').next()?.contains(':') {
-        return None;
+/// The file that a URI reference names.
+struct NamedFile {
+    path: PathBuf,
+    /// The reference is a path, not a URL.
+    relative: bool,
+}
+
+impl NamedFile {
+    /// None: it names no file of this machine.
+    fn new(uri: &str) -> Option<Self> {
+        let local = uri.strip_prefix("file://");
+        // RFC 3986 §4.2: a colon in the first segment makes it a URL (or a Windows drive).
+        if local.is_none() && uri.split('/').next()?.contains(':') {
+            return None;
+        }
+        // The rest of a file: URL starts with the name of a host, which must be empty.
+        if local.is_some_and(|path| !path.starts_with('/')) {
+            return None;
+        }
+        let decoded = percent_encoding::percent_decode_str(local.unwrap_or(uri))
+            .decode_utf8()
+            .ok()?;
+        if decoded.contains(['\\', '\0']) {
+            return None;
+        }
+        let path = PathBuf::from(decoded.into_owned());
+        path.file_name()?;
+        Some(Self {
+            path,
+            relative: local.is_none(),
+        })
     }
-    let decoded = percent_encoding::percent_decode_str(uri)
-        .decode_utf8()
-        .ok()?;
-    if decoded.contains(['\\', '\0']) {
-        return None;
+
+    /// Whether it stays below the folder that it starts from, but for links.
+    fn is_below(&self) -> bool {
+        let below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        self.relative && self.path.components().all(below)
     }
-    let path = PathBuf::from(decoded.into_owned());
-    let below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-    let names_file = path.file_name().is_some();
-    (names_file && path.components().all(below)).then_some(path)
 }
 
 /// Node transforms as f64: the `gltf` crate rounds them to f32, which displaces distant objects.

@@ -18,6 +18,11 @@ use crate::Result;
 /// [scene units] Coordinates beyond are refused: the square of a distance must fit into f32.
 pub(crate) const MAX_COORDINATE: f64 = 1e18;
 
+/// [byte] What the loader takes for a triangle with vertices of its own.
+const TRIANGLE_BYTES: u64 = 128;
+/// [byte] A primitive takes no memory but time, as much as some triangles do.
+const PRIMITIVE_BYTES: u64 = 1024;
+
 /// All triangles of a scene, in world space and f64.
 pub(super) struct Geometry {
     pub positions: Vec<DVec3>,
@@ -60,26 +65,22 @@ impl Geometry {
         let spend = |left: &mut usize, count, what| {
             *left = left.checked_sub(count).ok_or_else(|| {
                 document.error(format!(
-                    "{name}: the scene exceeds the limit on {what} (instances counted)"
+                    "{name}: the scene exceeds the limit on {what} (instances counted); raise --max-{what}"
                 ))
             })?;
             Ok(())
         };
-        spend(
-            &mut self.primitives_left,
-            json.primitives.len(),
-            "primitives",
-        )?;
+        let count = json.primitives.len();
+        spend(&mut self.primitives_left, count, "primitives")?;
+        document.spend(count as u64 * PRIMITIVE_BYTES, &name)?;
         for primitive in &json.primitives {
             note_ignored(primitive, &name, notes);
             let Some(source) = Source::open(document, primitive, &name, notes)? else {
                 continue;
             };
-            spend(
-                &mut self.triangles_left,
-                source.triangle_count(),
-                "triangles",
-            )?;
+            let count = source.triangle_count();
+            spend(&mut self.triangles_left, count, "triangles")?;
+            document.spend((count as u64).saturating_mul(TRIANGLE_BYTES), &name)?;
             self.add_primitive(document, &source, world, primitive.material)?;
         }
         Ok(())

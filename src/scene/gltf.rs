@@ -1,7 +1,7 @@
 //! glTF 2.0 (.gltf and .glb) → [`Scene`].
 //!
-//! Files may be malformed or hostile: every reference and range is checked before use, links out of
-//! the file's folder are refused, and [`Limits`] bound memory and time.
+//! Files may be malformed or hostile: every reference and range is checked before use, paths out of
+//! the file's folder are refused unless allowed, and [`Limits`] bound memory and time.
 //!
 //! Triangles without area are left out, for they neither show nor cast a shadow.
 
@@ -25,6 +25,9 @@ pub struct LoadOptions {
     pub scene: Option<usize>,
     /// [scene units] ≥ 0. Point and spot lights become discs of this radius. None: they are left out.
     pub punctual_radius: Option<f64>,
+    /// The file may name files outside of its own folder, be it by `..`, by a link, by an absolute path
+    /// or by a `file:` URL.
+    pub outside_paths: bool,
     pub limits: Limits,
 }
 
@@ -39,6 +42,40 @@ pub struct Limits {
     pub max_texture_side: u32,
     /// [texel] All textures together, 4 bytes each. Default: 2²⁸ (1 GiB).
     pub max_texels: u64,
+    /// What the scene takes in memory, per byte of its files, beyond the first 256 MiB: compressed images and
+    /// instances let a small file ask for much. Default: 256.
+    pub max_expansion: u64,
+}
+
+/// [byte] What any scene may take, however small its files are.
+const FREE_BYTES: u64 = 256 << 20;
+
+/// What a scene may still take in memory, in proportion to the files that it is read from.
+pub(super) struct Budget {
+    expansion: u64,
+    left: u64,
+}
+
+impl Budget {
+    pub fn new(limits: &Limits) -> Self {
+        Self {
+            expansion: limits.max_expansion,
+            left: FREE_BYTES,
+        }
+    }
+
+    /// Grants what a file of this many bytes may expand to.
+    pub fn earn(&mut self, file_bytes: usize) {
+        let earned = self.expansion.saturating_mul(file_bytes as u64);
+        self.left = self.left.saturating_add(earned);
+    }
+
+    /// Whether there is room for this many bytes, which are taken then.
+    pub fn spend(&mut self, bytes: u64) -> bool {
+        let rest = self.left.checked_sub(bytes);
+        self.left = rest.unwrap_or(self.left);
+        rest.is_some()
+    }
 }
 
 impl Default for Limits {
@@ -48,6 +85,7 @@ impl Default for Limits {
             max_primitives: 1 << 22,
             max_texture_side: 16384,
             max_texels: 1 << 28,
+            max_expansion: 256,
         }
     }
 }
@@ -66,7 +104,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> {
-    let document = Document::parse(path, bytes)?;
+    let document = Document::parse(path, bytes, options)?;
     let mut notes = Notes::default();
     let mut geometry = Geometry::new(&options.limits);
     let placed = walk(&document, options.scene)?;

@@ -216,7 +216,11 @@ impl<'a> Materials<'a> {
         let json = document.get(index, "image", user)?;
         let name = label("image", index.value(), json.name.as_deref());
         match (&json.uri, json.buffer_view) {
-            (Some(uri), _) => self.decode(&document.resource(uri, u64::MAX, &name)?, &name),
+            (Some(uri), _) => {
+                // No format takes more for a texel than four channels of 16 bits.
+                let longest = self.texels_left.saturating_mul(8).saturating_add(1 << 20);
+                self.decode(&document.resource(uri, longest, &name)?, &name)
+            }
             (None, Some(view)) => self.decode(document.view(view, &name)?.0, &name),
             (None, None) => {
                 Err(document.error(format!("{name}: has neither a uri nor a buffer view")))
@@ -242,9 +246,12 @@ impl<'a> Materials<'a> {
         let texels = u64::from(width) * u64::from(height);
         if width.max(height) > self.max_texture_side || texels > self.texels_left {
             return Err(self.document.error(format!(
-                "{name}: its {width}×{height} texels exceed the limit on textures"
+                "{name}: its {width}×{height} texels exceed the limit on textures ({0}×{0}, {1} texels left); \
+                 raise --max-texture-side or --max-texels",
+                self.max_texture_side, self.texels_left
             )));
         }
+        self.document.spend(texels * 4, name)?;
         let mut limits = image::Limits::no_limits();
         // At most 16 bits for each of four channels, and as much again for the decoder.
         limits.max_alloc = Some(texels * 16 + (64 << 20));

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::{MAX_SIZE, Settings, Shot};
-use crate::scene::gltf::{self, LoadOptions};
+use crate::scene::gltf::{self, Limits, LoadOptions};
 use crate::scene::{AreaLight, Camera, LightShape, Scene, file};
 use crate::{Error, Result};
 
@@ -26,6 +26,10 @@ pub struct Overrides {
     pub scene_index: Option<usize>,
     /// Which camera of the scene, counted from 0. A camera in the shot file goes before it.
     pub camera_index: Option<usize>,
+    /// A glTF may name files outside of its own folder.
+    pub outside_paths: bool,
+    /// What a glTF may ask for at most.
+    pub limits: Limits,
 }
 
 #[derive(Deserialize)]
@@ -85,10 +89,17 @@ impl Shot {
     /// # Errors
     /// When a file cannot be read or what it describes cannot be rendered.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Shot> {
-        let bytes = file::read(path)?;
-        match is_gltf(path, &bytes) {
-            true => Self::from_gltf(path, &bytes, overrides),
-            false => Self::completed(read_shot_file(path, &bytes, overrides)?, path, overrides),
+        Self::parse(path, &file::read(path)?, overrides)
+    }
+
+    /// As [`Self::load`], from bytes that were read from `path` before.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Shot> {
+        match is_gltf(path, bytes) {
+            true => Self::from_gltf(path, bytes, overrides),
+            false => Self::completed(read_shot_file(path, bytes, overrides)?, path, overrides),
         }
     }
 
@@ -119,7 +130,8 @@ impl Overrides {
         LoadOptions {
             scene: self.scene_index,
             punctual_radius: self.radius,
-            ..LoadOptions::default()
+            outside_paths: self.outside_paths,
+            limits: self.limits.clone(),
         }
     }
 }

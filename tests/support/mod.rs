@@ -1,6 +1,8 @@
 //! Builds small glTF files in memory.
 #![allow(dead_code)] // Each test program uses a part of it.
 
+pub mod mutate;
+
 use std::path::Path;
 
 use base64::Engine;
@@ -139,6 +141,20 @@ impl Gltf {
         glb
     }
 
+    /// Takes a GLB apart. None: it is none, or its chunks are not where they should be.
+    pub fn from_glb(glb: &[u8]) -> Option<Self> {
+        let length = |at: usize| -> Option<usize> {
+            let bytes = glb.get(at..at + 4)?.try_into().ok()?;
+            Some(u32::from_le_bytes(bytes) as usize)
+        };
+        let json_end = 20usize.checked_add(length(12)?)?;
+        let bytes_end = (json_end + 8).checked_add(length(json_end)?)?;
+        Some(Self {
+            json: serde_json::from_slice(glb.get(20..json_end)?).ok()?,
+            bytes: glb.get(json_end + 8..bytes_end)?.to_vec(),
+        })
+    }
+
     pub fn load(&self) -> Result<Scene> {
         self.load_with(&LoadOptions::default())
     }
@@ -227,6 +243,24 @@ pub fn textured_triangle(image: &[u8]) -> Gltf {
         json!({"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
         "extensions": {"KHR_lights_punctual": {"light": 0}}}),
     );
+    gltf
+}
+
+/// A triangle, lit by an area light, with a camera that sees it.
+pub fn lit_triangle() -> Gltf {
+    let mut gltf = Gltf::triangle();
+    gltf.json["extensions"]["EXT_lights_area"]["lights"] = json!([{"type": "rect", "size": 2.0, "rect": {"aspect": 0.5}}, {"type": "disk", "size": 1.0}]);
+    gltf.push(
+        "cameras",
+        json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1, "aspectRatio": 1.5}}),
+    );
+    gltf.node(json!({"camera": 0, "translation": [0, 0, 5]}));
+    for (light, x) in [(0, -0.5), (1, 0.5)] {
+        let area = json!({"EXT_lights_area": {"light": light}});
+        gltf.node(
+            json!({"translation": [x, 0.5, 3], "rotation": [0, 0, 0, 1], "extensions": area}),
+        );
+    }
     gltf
 }
 
