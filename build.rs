@@ -12,15 +12,23 @@ use shaderc::OptimizationLevel;
 mod shared;
 
 const SHARED_HEADER: &str = "shared.glsl";
+/// Set when building, it leaves shaders as they are written.
+const UNOPTIMIZED: &str = "HALFSHADE_UNOPTIMIZED_SHADERS";
 
 fn main() {
     println!("cargo:rerun-if-changed=glsl");
     println!("cargo:rerun-if-changed=src/shared.rs");
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
     let header = shared_header();
+    // Validation layers that rewrite shaders break some loops of optimized ones.
+    println!("cargo:rerun-if-env-changed={UNOPTIMIZED}");
+    let level = match env::var_os(UNOPTIMIZED) {
+        Some(_) => OptimizationLevel::Zero,
+        None => OptimizationLevel::Performance,
+    };
     let mut table = String::from("pub static SHADERS: &[Shader] = &[\n");
     for path in sources(Path::new("glsl")) {
-        let words = compile(&path, &header, OptimizationLevel::Performance);
+        let words = compile(&path, &header, level);
         // The optimizer strips the names that the recorder binds by.
         let named = compile(&path, &header, OptimizationLevel::Zero);
         let file = path
