@@ -6,14 +6,14 @@
 //! their shaders' `precise` expressions operation by operation. What is summed up, the visibility, is
 //! derived anew from the geometry in f64.
 
-mod bvh;
+pub(crate) mod bvh;
 pub mod classify;
 pub mod contour;
 pub mod depth;
 pub mod kernels;
 mod light;
 pub mod mssm;
-mod pinhole;
+pub(crate) mod pinhole;
 pub mod radial;
 pub mod reference;
 pub mod resolve;

@@ -9,11 +9,13 @@ pub mod gltf;
 mod light;
 mod material;
 mod notes;
+mod shape;
 mod tree;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub(crate) use geometry::MAX_COORDINATE;
+pub use shape::Shape;
 
 /// A scene, flattened into one list of triangles in one space.
 ///

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::scene::{AreaLight, Camera, MAX_COORDINATE, Scene};
 use crate::{Error, Result};
 
+#[cfg(feature = "cli")]
+mod built_in;
 mod flags;
 mod load;
 mod names;

@@ -5,6 +5,7 @@
 //! merged; tables, plots and pages are made from these files.
 
 mod bench;
+pub mod figure;
 mod flicker;
 mod folder;
 mod front;

@@ -1,5 +1,6 @@
 //! `halfshade study`: error against run time.
 
+mod figure;
 mod merge;
 mod pareto;
 mod sweep_args;
@@ -10,7 +11,7 @@ use halfshade::Result;
 /// Measures error against run time on your shots and device.
 ///
 /// `pareto` sweeps techniques and settings and reports all of them; `merge` joins parts of a sweep that ran on
-/// several machines; `tune` finds the settings to use.
+/// several machines; `tune` finds the settings to use; `figure` repeats what the publications measured.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(subcommand)]
@@ -22,6 +23,7 @@ enum What {
     Pareto(pareto::Args),
     Merge(merge::Args),
     Tune(tune::Args),
+    Figure(figure::Args),
 }
 
 /// # Errors
@@ -31,5 +33,6 @@ pub fn run(args: &Args) -> Result<()> {
         What::Pareto(args) => pareto::run(args),
         What::Merge(args) => merge::run(args),
         What::Tune(args) => tune::run(args),
+        What::Figure(args) => figure::run(args),
     }
 }

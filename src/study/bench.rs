@@ -224,6 +224,9 @@ impl<'a> Bench<'a> {
             false => BTreeMap::new(),
         };
         let times = Times(&ready.frames);
+        let plan = ready.renderer.plan();
+        let resources = plan.resources.iter();
+        let resources = resources.map(|&(name, bytes)| (name.to_owned(), bytes));
         let measured = Measured {
             frames: ready.frames.len(),
             warm,
@@ -233,7 +236,8 @@ impl<'a> Bench<'a> {
             compute_ms: times.of(is_compute),
             total_ms: times.of(|_| true),
             passes: times.by_pass(),
-            memory_bytes: ready.renderer.plan().memory_bytes(),
+            memory_bytes: plan.memory_bytes(),
+            resources: resources.collect(),
             errors: ready.errors,
             counters,
         };

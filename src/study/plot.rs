@@ -18,8 +18,8 @@ const COLUMNS: usize = 2;
 const ERROR_MIN: f64 = 1e-5;
 const MS_MIN: f64 = 1e-4;
 
-/// Colours that are told apart by the colour-blind (Paul Tol's "muted"), by technique.
-fn color(technique: Technique) -> RGBColor {
+/// Colours that are told apart by the colour-blind (Paul Tol's "muted"), over and over.
+pub(super) fn muted(index: usize) -> RGBColor {
     const COLORS: [(u8, u8, u8); 9] = [
         (204, 51, 17),
         (51, 34, 136),
@@ -31,12 +31,16 @@ fn color(technique: Technique) -> RGBColor {
         (136, 34, 85),
         (120, 120, 120),
     ];
-    let index = Technique::ALL.iter().position(|&other| other == technique);
-    let (red, green, blue) = COLORS[index.unwrap_or(0) % COLORS.len()];
+    let (red, green, blue) = COLORS[index % COLORS.len()];
     RGBColor(red, green, blue)
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+fn color(technique: Technique) -> RGBColor {
+    let index = Technique::ALL.iter().position(|&other| other == technique);
+    muted(index.unwrap_or(0))
+}
+
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Error over shadow pixels against the time of the shadow passes, every measured run a dot, the front a line.
 ///
@@ -71,7 +75,7 @@ pub(super) fn pareto(runs: &[Run]) -> Result<String> {
     Ok(svg)
 }
 
-fn failed<E: std::fmt::Display>(error: E) -> Error {
+pub(super) fn failed<E: std::fmt::Display>(error: E) -> Error {
     Error::Invalid(format!("a plot cannot be drawn: {error}"))
 }
 
@@ -160,8 +164,8 @@ fn point(measured: &Measured) -> (f64, f64) {
 }
 
 /// A number in as few characters as tell it from its neighbours on a logarithmic axis.
-fn short(value: f64) -> String {
-    let digits = (1.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
+pub(super) fn short(value: f64) -> String {
+    let digits = (1.0 - value.abs().max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.digits$}");
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),

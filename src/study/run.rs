@@ -93,6 +93,9 @@ pub struct Measured {
     pub passes: BTreeMap<String, Spread>,
     /// [byte] Peak of the device memory.
     pub memory_bytes: u64,
+    /// [byte] Of each resource.
+    #[serde(default)]
+    pub resources: BTreeMap<String, u64>,
     pub errors: Errors,
     /// Empty unless asked for.
     pub counters: BTreeMap<String, u64>,

@@ -89,15 +89,23 @@ fn counted(run: &Run, name: &str) -> String {
 /// # Errors
 /// A value cannot be written.
 pub(super) fn csv(runs: &[Run]) -> Result<String> {
-    let failed = |error: String| Error::Invalid(format!("the table cannot be written: {error}"));
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let header = COLUMNS.iter().map(|(name, _)| (*name).to_owned());
+    let header = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).collect();
     let rows = runs
         .iter()
         .map(|run| COLUMNS.iter().map(|(_, value)| value(run)).collect());
-    for row in std::iter::once(header.collect::<Vec<String>>()).chain(rows) {
+    written(std::iter::once(header).chain(rows))
+}
+
+/// Records as comma-separated values.
+///
+/// # Errors
+/// A value cannot be written.
+pub(super) fn written(records: impl Iterator<Item = Vec<String>>) -> Result<String> {
+    let failed = |error: String| Error::Invalid(format!("the table cannot be written: {error}"));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for record in records {
         writer
-            .write_record(row)
+            .write_record(record)
             .map_err(|error| failed(error.to_string()))?;
     }
     let bytes = writer

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use super::document::{Document, Index};
-use super::shapes::Shape;
 use super::shot::{Light, Shot};
+use halfshade::scene::Shape;
 
 /// [unit] From column to column along a row.
 const SPACING: f64 = 2.0;

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 use serde_json::{Map, Value, json};
 
-use super::shapes::Shape;
+use halfshade::scene::Shape;
 
 /// glTF's number for each index type.
 #[derive(Clone, Copy)]

@@ -4,8 +4,8 @@ use glam::{DMat4, DVec3};
 use serde_json::json;
 
 use super::document::{Document, Index, primitive};
-use super::shapes::Shape;
 use super::shot::{Light, Shot};
+use halfshade::scene::Shape;
 
 /// [unit] The height of the light above the floor.
 const LIGHT: f64 = 3.2;

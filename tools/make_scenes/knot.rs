@@ -1,13 +1,11 @@
 //! A ball and a torus knot that touch the ground, under a disc.
 
-use std::f64::consts::TAU;
-
 use glam::DVec3;
 use serde_json::json;
 
 use super::document::{Document, Index, Mode};
-use super::shapes::Shape;
 use super::shot::{Light, Shot};
+use halfshade::scene::Shape;
 
 pub fn scene() -> (Shot, Document) {
     let shot = Shot {
@@ -30,7 +28,8 @@ pub fn scene() -> (Shot, Document) {
 
     let ground = document.unindexed(&Shape::square(12.0).soup(), Mode::Triangles, plaster);
     let ball = document.indexed(&Shape::ball(0.55, 48), Index::U16, coral);
-    let knot = document.indexed(&torus_knot(), Index::U16, mint);
+    let upright = Shape::torus_knot(0.75, 0.36, 0.17, 180, 18);
+    let knot = document.indexed(&upright, Index::U16, mint);
 
     let mut nodes = Vec::new();
     for (name, primitive, place) in [
@@ -44,25 +43,4 @@ pub fn scene() -> (Shot, Document) {
     nodes.extend(shot.add_to(&mut document));
     document.scene("knot", &nodes);
     (shot, document)
-}
-
-/// The (2, 3) torus knot, upright, standing on y = 0.
-fn torus_knot() -> Shape {
-    const RING: f64 = 0.75;
-    const WINDING: f64 = 0.36;
-    let frame = |t: f64| {
-        let (sin_p, cos_p) = (2.0 * TAU * t).sin_cos();
-        let (sin_q, cos_q) = (3.0 * TAU * t).sin_cos();
-        let radial = DVec3::new(cos_p, sin_p, 0.0);
-        // The torus's own normal is perpendicular to every curve on it.
-        let normal = radial * cos_q + DVec3::Z * sin_q;
-        let along = DVec3::new(-sin_p, cos_p, 0.0) * 2.0 * (RING + WINDING * cos_q)
-            + (radial * -sin_q + DVec3::Z * cos_q) * 3.0 * WINDING;
-        [
-            radial * RING + normal * WINDING,
-            normal,
-            along.normalize().cross(normal),
-        ]
-    };
-    Shape::closed_tube(frame, 0.17, 180, 18).set_down()
 }

@@ -19,7 +19,6 @@ mod document;
 mod grid;
 mod knot;
 mod plate;
-mod shapes;
 mod shot;
 mod staircase;
 mod tree;

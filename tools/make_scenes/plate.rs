@@ -4,8 +4,8 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::document::{Document, Index, Mode};
-use super::shapes::Shape;
 use super::shot::{Light, Shot};
+use halfshade::scene::Shape;
 
 pub fn scene() -> (Shot, Document) {
     let shot = Shot {

@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use serde_json::json;
 
 use super::document::{Document, Index, Mode};
-use super::shapes::Shape;
 use super::shot::{Light, Shot};
+use halfshade::scene::Shape;
 
 /// Steps of the stair.
 const STEPS: u32 = 9;

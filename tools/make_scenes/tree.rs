@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
 use super::document::{Document, Index};
-use super::shapes::Shape;
 use super::shot::{Light, Shot};
+use halfshade::scene::Shape;
 
 pub fn scene() -> (Shot, Document) {
     let shot = Shot {

@@ -1,6 +1,6 @@
 //! The shots that calibration measures, and their renderers.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -17,13 +17,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::super::calibration::Calibration;
 use super::super::print_notes;
 
-/// Scenes of `scenes/`, which an installed program has not beside it: penumbrae of large casters, thin
-/// occluders, huge kernels.
-const BUILT_IN: [(&str, &[u8]); 3] = [
-    ("colonnade", include_bytes!("../../../scenes/colonnade.glb")),
-    ("tree", include_bytes!("../../../scenes/tree.glb")),
-    ("grid", include_bytes!("../../../scenes/grid.glb")),
-];
+/// Built-in shots: penumbrae of large casters, thin occluders, huge kernels.
+const BUILT_IN: [&str; 3] = ["colonnade", "tree", "grid"];
 
 /// [pixel] Width and height at which a built-in shot is tried; with `--quick` also measured.
 const SIZE_PROBE: u32 = 64;
@@ -87,8 +82,8 @@ impl<'a> Bench<'a> {
             bench.shots.push(shot);
         }
         if files.is_empty() {
-            for (name, bytes) in BUILT_IN {
-                match bench.sized(name, bytes, quick)? {
+            for name in BUILT_IN {
+                match bench.sized(name, quick)? {
                     Some(shot) => bench.shots.push(shot),
                     None => bench.left_out.push(name),
                 }
@@ -98,7 +93,7 @@ impl<'a> Bench<'a> {
     }
 
     /// A built-in shot, in a size that suits the device. None: it is too slow for the shot.
-    fn sized(&self, name: &str, bytes: &[u8], quick: bool) -> Result<Option<Shot>> {
+    fn sized(&self, name: &str, quick: bool) -> Result<Option<Shot>> {
         let pixelwise = Calibration {
             packet: (1, 1),
             ..Calibration::default()
@@ -108,7 +103,7 @@ impl<'a> Bench<'a> {
                 size: Some((size, size)),
                 ..Overrides::default()
             };
-            let shot = Shot::from_gltf(Path::new(name), bytes, &overrides)?;
+            let shot = Shot::built_in(name, &overrides)?;
             Ok::<_, Error>(Shot {
                 settings: settings(),
                 ..shot

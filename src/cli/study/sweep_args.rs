@@ -135,16 +135,7 @@ impl ProtocolArgs {
             samples: self.samples,
             ..ReferenceOptions::default()
         };
-        let cache = match (&self.truths, project_folders()) {
-            (Some(folder), _) => folder.clone(),
-            (None, Some(folders)) => folders.cache_dir().join("truths"),
-            (None, None) => {
-                return Err(Error::Invalid(
-                    "there is no home folder to keep traced truths in; name one with --truths"
-                        .into(),
-                ));
-            }
-        };
+        let cache = truths_folder(self.truths.as_deref())?;
         let bar = progress::bar("tracing the truth", 1000);
         let advance = |share: f64| bar.set_position((share * 1000.0) as u64);
         let subject = Subject::load(file, &overrides, &cache, options, &advance, interrupted);
@@ -152,6 +143,20 @@ impl ProtocolArgs {
         let subject = subject?;
         print_notes(&subject.shot);
         Ok(subject)
+    }
+}
+
+/// Where traced truths are kept: the folder that is named, else one in the user's cache folder.
+///
+/// # Errors
+/// There is neither.
+pub fn truths_folder(named: Option<&Path>) -> Result<PathBuf> {
+    match (named, project_folders()) {
+        (Some(folder), _) => Ok(folder.to_owned()),
+        (None, Some(folders)) => Ok(folders.cache_dir().join("truths")),
+        (None, None) => Err(Error::Invalid(
+            "there is no home folder to keep traced truths in; name one with --truths".into(),
+        )),
     }
 }
 

@@ -1,12 +1,15 @@
-//! Indexed triangle meshes, counter-clockwise seen from outside, y up.
+//! Scenes built in code: indexed triangle meshes, counter-clockwise seen from outside, y up.
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+
+use super::{Material, Scene};
 
 /// Points and the triangles between them.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Shape {
+    /// [scene units]
     pub positions: Vec<DVec3>,
     /// Indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
@@ -120,6 +123,26 @@ impl Shape {
         shape
     }
 
+    /// The (2, 3) torus knot, upright, standing on y = 0: a tube of this radius round a ring of radius `ring` and
+    /// `winding` away from it, of `rings` × `segments` quads.
+    pub fn torus_knot(ring: f64, winding: f64, radius: f64, rings: u32, segments: u32) -> Self {
+        let frame = |t: f64| {
+            let (sin_p, cos_p) = (2.0 * TAU * t).sin_cos();
+            let (sin_q, cos_q) = (3.0 * TAU * t).sin_cos();
+            let radial = DVec3::new(cos_p, sin_p, 0.0);
+            // The torus's own normal is perpendicular to every curve on it.
+            let normal = radial * cos_q + DVec3::Z * sin_q;
+            let along = DVec3::new(-sin_p, cos_p, 0.0) * 2.0 * (ring + winding * cos_q)
+                + (radial * -sin_q + DVec3::Z * cos_q) * 3.0 * winding;
+            [
+                radial * ring + normal * winding,
+                normal,
+                along.normalize().cross(normal),
+            ]
+        };
+        Self::closed_tube(frame, radius, rings, segments).set_down()
+    }
+
     /// Adds another shape's triangles.
     pub fn append(&mut self, other: &Self) {
         let first = self.positions.len() as u32;
@@ -141,6 +164,25 @@ impl Shape {
         self
     }
 
+    /// The corners of the box around all points; both 0 without any.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let Some((&first, rest)) = self.positions.split_first() else {
+            return (DVec3::ZERO, DVec3::ZERO);
+        };
+        rest.iter()
+            .fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)))
+    }
+
+    /// Enlarged or shrunk so that the longest side of its box is `size`, with the box's middle at `center`.
+    pub fn fitted(mut self, size: f64, center: DVec3) -> Self {
+        let (lo, hi) = self.bounds();
+        let scale = size / (hi - lo).max_element();
+        for p in &mut self.positions {
+            *p = center + (*p - 0.5 * (lo + hi)) * scale;
+        }
+        self
+    }
+
     /// The corners of all triangles, three points each.
     pub fn soup(&self) -> Vec<DVec3> {
         let corners = self.triangles.iter().flatten();
@@ -155,5 +197,35 @@ impl Shape {
                 self.triangles.push(triangle);
             }
         }
+    }
+}
+
+impl Scene {
+    /// Opaque, two-sided shapes, each of its linear colour.
+    pub fn of_shapes(parts: &[(Shape, Vec3)]) -> Self {
+        let mut whole = Shape::default();
+        let mut scene = Self::default();
+        for (index, (shape, color)) in parts.iter().enumerate() {
+            whole.append(shape);
+            let materials = std::iter::repeat_n(index as u32, shape.triangles.len());
+            scene.triangle_materials.extend(materials);
+            scene.materials.push(Material {
+                name: String::new(),
+                base_color: color.extend(1.0),
+                texture: None,
+                alpha_cutoff: None,
+                double_sided: true,
+            });
+        }
+        let (lo, hi) = whole.bounds();
+        scene.origin = 0.5 * (lo + hi);
+        let relative = whole
+            .positions
+            .iter()
+            .map(|&p| (p - scene.origin).as_vec3());
+        scene.positions = relative.collect();
+        scene.opaque_count = whole.triangles.len();
+        scene.triangles = whole.triangles;
+        scene
     }
 }

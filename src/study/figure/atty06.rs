@@ -1,0 +1,323 @@
+//! [Atty06]: the error over map size, light size and the occluder's place.
+
+use super::check::{Check, number, numbers};
+use super::row::{Curve, ERROR, SHADOW_PIXELS};
+use super::stage::{Model, Stage};
+use super::{Candidate, Experiment, Row, Scale, Trial};
+use crate::Result;
+use crate::shot::{Settings, Technique};
+
+/// The sum of what back-projected patches hide, pixel by pixel: what [Atty06] sums in a texture.
+pub const PATCHES: &str = "micropatches with gaps";
+const CONTOURS: &str = "packet-contour, S = 1";
+const VIEWS: &str = "packet-contour, S = 4";
+
+/// [texel] The map of all figures but the 17th.
+const MAP: u32 = 128;
+/// [scene units] The light of the figures that do not vary it.
+pub const LIGHT: f64 = 0.1;
+/// |τ| from which on a curve counts as rising or falling.
+const CLEAR: f64 = 0.6;
+/// How little a finer map may gain, as a share of the error, for the error to be at its limit.
+const LIMIT: f64 = 0.25;
+
+const MISSING: &str = "the paper's own algorithm, which sums the patches' shadows in a texture on the ground, and its \
+                       second pass over back faces; micropatches with gaps hide the same of the light, pixel by pixel";
+const DIFFERS: &str = "models, their places and the sizes of light and image are not the paper's; errors are means \
+                       over pixels of an oblique view of the ground, not over texels of it";
+
+pub const FIG17: Experiment = Experiment {
+    name: "atty06-fig17",
+    source: "Atty et al. 2006, figure 17: error over the resolution of the shadow map",
+    paper: "mean difference to occlusion queries over pixels in shadow, of a square plate parallel to the light, the \
+            Buddha and the Bunny, over the side of the map, for one pass and for two",
+    claim: "the error falls with the resolution and hardly further beyond 200x200; the square's curve has spikes",
+    here: "the square, a torus knot and a figure of boxes, maps of 32 to 512 texels, a light half as large as the \
+           occluder, 128x128 pixels of which those on the ground count",
+    missing: MISSING,
+    differs: DIFFERS,
+    abscissa: "map",
+    columns: &[ERROR, SHADOW_PIXELS],
+    frames: 1,
+    counters: false,
+    takes_shots: false,
+    trials: |scale, _| {
+        let maps = scale.pick(&[32, 64][..], &MAPS, &MAPS);
+        let stage = |&model: &Model| {
+            let series = |map: &u32| candidates(f64::from(*map), *map);
+            trial(
+                scale,
+                Stage::usual(model, LIGHT),
+                maps.iter().flat_map(series).collect(),
+            )
+        };
+        models(scale).iter().map(stage).collect()
+    },
+    judge: judge_fig17,
+};
+
+const MAPS: [u32; 11] = [32, 48, 64, 96, 128, 160, 200, 256, 320, 400, 512];
+
+pub const FIG18: Experiment = Experiment {
+    name: "atty06-fig18",
+    source: "Atty et al. 2006, figure 18: error over the size of the light",
+    paper: "the same three scenes, maps of 128x128, lights from a point (0.01) to about the occluder's size (0.2)",
+    claim: "a point light's error is large; from there on the error rises with the light",
+    here: "the square, a torus knot and a figure of boxes 0.2 wide, lights of side 0.01 to 0.2, one unit above the \
+           ground, 128x128 pixels of which those on the ground count",
+    missing: MISSING,
+    differs: DIFFERS,
+    abscissa: "light_size",
+    columns: &[ERROR, SHADOW_PIXELS],
+    frames: 1,
+    counters: false,
+    takes_shots: false,
+    trials: |scale, _| {
+        let lights = scale.pick(&[0.05, 0.2][..], &LIGHTS, &LIGHTS);
+        over(scale, lights, |model, light| Stage::usual(model, light))
+    },
+    judge: judge_fig18,
+};
+
+const LIGHTS: [f64; 7] = [0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2];
+
+pub const FIG19: Experiment = Experiment {
+    name: "atty06-fig19",
+    source: "Atty et al. 2006, figure 19: error over the lateral position of the occluder",
+    paper: "the same three scenes, maps of 128x128, the occluder moved from left to right under the light",
+    claim: "the error is least when the occluder is roughly under the light and rises to both sides",
+    here: "the square, a torus knot and a figure of boxes, a light half as large, moved by up to one and a half times \
+           their size, 128x128 pixels of which those on the ground count",
+    missing: MISSING,
+    differs: DIFFERS,
+    abscissa: "aside",
+    columns: &[ERROR, SHADOW_PIXELS],
+    frames: 1,
+    counters: false,
+    takes_shots: false,
+    trials: |scale, _| {
+        let places = scale.pick(&[0.0, 0.3][..], &PLACES, &PLACES);
+        over(scale, places, |model, aside| Stage {
+            aside,
+            ..Stage::usual(model, LIGHT)
+        })
+    },
+    judge: judge_fig19,
+};
+
+const PLACES: [f64; 7] = [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3];
+/// [scene units] How far from the light's middle the least error may be to be roughly under it.
+const UNDER: f64 = 0.1;
+
+pub const FIG20: Experiment = Experiment {
+    name: "atty06-fig20",
+    source: "Atty et al. 2006, figure 20: error over the vertical position of the occluder",
+    paper: "the same three scenes, maps of 128x128, the occluder moved from the ground up to the light",
+    claim: "the error rises as the occluder nears the light",
+    here: "the square, a torus knot and a figure of boxes, a light half as large, from the ground (0) nearly up to \
+           the light (1), 128x128 pixels of which those on the ground count",
+    missing: MISSING,
+    differs: DIFFERS,
+    abscissa: "height",
+    columns: &[ERROR, SHADOW_PIXELS],
+    frames: 1,
+    counters: false,
+    takes_shots: false,
+    trials: |scale, _| {
+        let heights = scale.pick(&[0.2, 0.6][..], &HEIGHTS, &HEIGHTS);
+        over(scale, heights, |model, height| {
+            Stage::lifted(model, LIGHT, height)
+        })
+    },
+    judge: judge_fig20,
+};
+
+const HEIGHTS: [f64; 7] = [0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9];
+
+/// The models of a scale.
+fn models(scale: Scale) -> &'static [Model] {
+    scale.pick(&Model::ALL[..2], &Model::ALL[..], &Model::ALL[..])
+}
+
+/// A stage for each model and x, under maps of the usual size.
+fn over(scale: Scale, xs: &[f64], stage: fn(Model, f64) -> Stage) -> Result<Vec<Trial>> {
+    let map = scale.pick(64, MAP, MAP);
+    let models = models(scale).iter();
+    let places = models.flat_map(|&model| xs.iter().map(move |&x| (model, x)));
+    places
+        .map(|(model, x)| trial(scale, stage(model, x), candidates(x, map)))
+        .collect()
+}
+
+pub fn trial(scale: Scale, stage: Stage, candidates: Vec<Candidate>) -> Result<Trial> {
+    Ok(Trial {
+        scene: stage.model.name().into(),
+        shot: stage.shot(scale.pick(32, 128, 256)),
+        truth: stage.truth(),
+        samples: scale.pick(64, 1024, 4096),
+        candidates,
+    })
+}
+
+fn candidates(x: f64, map: u32) -> Vec<Candidate> {
+    let contours = |split| Settings {
+        split,
+        map,
+        ..Settings::default()
+    };
+    vec![
+        Candidate::new(PATCHES, x, patches(Technique::MicropatchHierarchical, map)),
+        Candidate::new(CONTOURS, x, contours(1)),
+        Candidate::new(VIEWS, x, contours(4)),
+    ]
+}
+
+/// Patches as [Atty06] has them.
+pub fn patches(technique: Technique, map: u32) -> Settings {
+    Settings {
+        map,
+        gap_filling: false,
+        ..Settings::usual(technique)
+    }
+}
+
+fn curve(rows: &[Row], model: Model) -> Curve {
+    Curve::of(rows, model.name(), PATCHES, Row::error)
+}
+
+/// The models that were measured.
+fn measured(rows: &[Row]) -> impl Iterator<Item = Model> {
+    let known = |model: &Model| rows.iter().any(|row| row.scene == model.name());
+    Model::ALL.into_iter().filter(known)
+}
+
+fn judge_fig17(rows: &[Row]) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for model in measured(rows) {
+        let errors = curve(rows, model);
+        let coarse = errors.within(0.0, 200.0);
+        checks.push(Check::new(
+            format!(
+                "{}: the error falls up to 200 texels (τ ≤ −{CLEAR})",
+                model.name()
+            ),
+            format!(
+                "τ = {}, from {} to {}",
+                number(coarse.trend()),
+                number(coarse.first()),
+                number(coarse.last())
+            ),
+            coarse.trend() <= -CLEAR,
+        ));
+        let fine = errors.within(200.0, f64::INFINITY);
+        let gain = 1.0 - fine.last() / fine.first();
+        if Model::CLOSED.contains(&model) {
+            checks.push(Check::new(
+                format!(
+                    "{}: beyond 200 texels it falls by no more than a quarter",
+                    model.name()
+                ),
+                format!("by {} %", number(100.0 * gain)),
+                gain <= LIMIT,
+            ));
+        } else {
+            let rises = errors
+                .0
+                .windows(2)
+                .filter(|pair| pair[1].1 > pair[0].1)
+                .count();
+            checks.push(Check::new(
+                format!("{}: its curve has spikes (rises somewhere)", model.name()),
+                format!(
+                    "rises in {rises} of {} steps",
+                    errors.0.len().saturating_sub(1)
+                ),
+                rises > 0,
+            ));
+        }
+    }
+    checks
+}
+
+fn judge_fig18(rows: &[Row]) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for model in measured(rows) {
+        let errors = curve(rows, model);
+        let least = errors.lowest().map_or(f64::NAN, |point| point.0);
+        checks.push(Check::new(
+            format!(
+                "{}: the smallest light's error is more than the least",
+                model.name()
+            ),
+            format!(
+                "{}, the least is that of {}",
+                number(errors.first()),
+                number(least)
+            ),
+            errors.first() > errors.at(least),
+        ));
+        let larger = errors.within(least, f64::INFINITY);
+        checks.push(Check::new(
+            format!(
+                "{}: from there on it rises with the light (τ ≥ {CLEAR})",
+                model.name()
+            ),
+            format!(
+                "τ = {}, up to {}",
+                number(larger.trend()),
+                number(larger.last())
+            ),
+            larger.trend() >= CLEAR,
+        ));
+    }
+    checks
+}
+
+fn judge_fig19(rows: &[Row]) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for model in measured(rows) {
+        let errors = curve(rows, model);
+        let least = errors.lowest().map_or(f64::NAN, |point| point.0);
+        checks.push(Check::new(
+            format!(
+                "{}: the error is least roughly under the light (within {UNDER})",
+                model.name()
+            ),
+            format!("least at {}", number(least)),
+            least.abs() <= UNDER,
+        ));
+        let sides = [
+            errors.within(f64::NEG_INFINITY, 0.0).trend(),
+            errors.within(0.0, f64::INFINITY).trend(),
+        ];
+        checks.push(Check::new(
+            format!(
+                "{}: it rises to both sides (τ ≤ −{CLEAR}, ≥ {CLEAR})",
+                model.name()
+            ),
+            format!("τ = {}", numbers(sides)),
+            sides[0] <= -CLEAR && sides[1] >= CLEAR,
+        ));
+    }
+    checks
+}
+
+fn judge_fig20(rows: &[Row]) -> Vec<Check> {
+    let rise = |model: Model| {
+        let errors = curve(rows, model);
+        Check::new(
+            format!(
+                "{}: the error rises towards the light (τ ≥ {CLEAR})",
+                model.name()
+            ),
+            format!(
+                "τ = {}, from {} to {}",
+                number(errors.trend()),
+                number(errors.first()),
+                number(errors.last())
+            ),
+            errors.trend() >= CLEAR,
+        )
+    };
+    measured(rows).map(rise).collect()
+}

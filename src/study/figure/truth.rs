@@ -1,0 +1,137 @@
+//! What counts as true in an experiment, and where.
+
+use glam::DVec3;
+
+use crate::cpu::bvh::{Bvh, Ray};
+use crate::cpu::pinhole::Pinhole;
+use crate::shot::Shot;
+use crate::{Error, Result};
+
+use super::super::subject::Subject;
+
+/// What the candidates of a trial are compared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Truth {
+    /// Rays, in all pixels.
+    Rays,
+    /// Rays, in the pixels that see the ground y = 0.
+    OnGround,
+    /// The closed form of a square's shadow, in the pixels that see the ground y = 0.
+    Square(Square),
+}
+
+/// A horizontal square over the ground y = 0, under a square light that is parallel to it; sides along x and z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Square {
+    /// [scene units] Its centre.
+    pub center: DVec3,
+    /// [scene units] Half its side.
+    pub half: f64,
+    /// [scene units] The light's centre, and half its side.
+    pub light: DVec3,
+    pub light_half: f64,
+}
+
+/// [scene units] What is no higher is ground: far above the rounding of its f32 coordinates.
+const GROUND_HEIGHT: f64 = 1e-5;
+
+impl Square {
+    /// [0, 1] The share of the light that a point of the ground sees.
+    pub fn visibility(&self, from: DVec3) -> f64 {
+        // Seen from the point, the square covers an interval of the light along each axis.
+        let scale = self.light.y / self.center.y;
+        let covered = |from: f64, center: f64, light: f64| {
+            let middle = from + (center - from) * scale;
+            let half = self.half * scale;
+            let low = (middle - half).max(light - self.light_half);
+            let high = (middle + half).min(light + self.light_half);
+            ((high - low) / (2.0 * self.light_half)).max(0.0)
+        };
+        let x = covered(from.x, self.center.x, self.light.x);
+        let z = covered(from.z, self.center.z, self.light.z);
+        1.0 - x * z
+    }
+}
+
+impl Truth {
+    /// Puts this truth in the place of the traced one, and leaves out the pixels where it says nothing. Returns what
+    /// there is to say about it.
+    ///
+    /// # Errors
+    /// The shot has more than one light, or cannot be traced.
+    pub(super) fn apply(self, subject: &mut Subject) -> Result<Option<String>> {
+        if self == Self::Rays {
+            return Ok(None);
+        }
+        if subject.shot.lights.len() != 1 {
+            return Err(Error::Invalid(
+                "an experiment on the ground has one light".into(),
+            ));
+        }
+        let (mut sum, mut count) = (0.0, 0usize);
+        for (index, point) in ground(&subject.shot)?.into_iter().enumerate() {
+            let Some(point) = point else {
+                subject.facing.data[index] = f32::NAN;
+                continue;
+            };
+            if let Self::Square(square) = self {
+                let exact = square.visibility(point);
+                if exact < 1.0 {
+                    sum += (f64::from(subject.visibility.data[index]) - exact).abs();
+                    count += 1;
+                }
+                subject.visibility.data[index] = exact as f32;
+            }
+        }
+        Ok((count > 0).then(|| {
+            format!(
+                "the truth is the closed form; {} rays a pixel are {:.5} off it on the mean over shadow pixels",
+                subject.truth_samples,
+                sum / count as f64
+            )
+        }))
+    }
+}
+
+/// The point of the ground that each pixel sees, row by row from the top; None: it sees something else.
+fn ground(shot: &Shot) -> Result<Vec<Option<DVec3>>> {
+    let scene = &*shot.scene;
+    let bvh = Bvh::new(scene)?;
+    let pinhole = Pinhole::new(&shot.camera, scene.origin, shot.width, shot.height)?;
+    let mut stack = Vec::new();
+    let mut point = |x, y| {
+        let direction = pinhole.direction(x, y);
+        let hit = bvh.nearest(&Ray::new(pinhole.eye, direction), &mut stack, |_| true)?;
+        let point = pinhole.eye + direction * hit.t + scene.origin;
+        (point.y.abs() <= GROUND_HEIGHT).then_some(point)
+    };
+    let (width, height) = (shot.width as usize, shot.height as usize);
+    Ok((0..width * height)
+        .map(|index| point(index % width, index / width))
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The plate of `scenes/plate.json`, whose shadow is known by hand.
+    #[test]
+    fn a_square_by_hand() {
+        let square = Square {
+            center: DVec3::new(0.0, 1.5, 0.0),
+            half: 0.5,
+            light: DVec3::new(0.0, 3.0, 0.0),
+            light_half: 0.75,
+        };
+        let hidden = |s: f64| ((1.75 - s.abs()) / 1.5).clamp(0.0, 1.0);
+        for (x, z) in [(0.0, 0.0), (0.5, -0.2), (1.0, 1.2), (1.8, 0.0), (-0.9, 0.3)] {
+            let exact = 1.0 - hidden(x) * hidden(z);
+            let found = square.visibility(DVec3::new(x, 0.0, z));
+            assert!(
+                (found - exact).abs() < 1e-12,
+                "{found} at {x}, {z}: {exact}"
+            );
+        }
+    }
+}
