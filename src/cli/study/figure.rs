@@ -1,7 +1,7 @@
 //! `halfshade study figure`: what the publications measured, measured here.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use halfshade::shot::{Overrides, Shot};
 use halfshade::study::figure::{Experiment, Lab, NamedShot, Report, Scale, Trials, list};
@@ -54,7 +54,11 @@ pub fn run(args: &Args) -> Result<()> {
         (_, true) => Scale::Paper,
         _ => Scale::Usual,
     };
-    let shots: Vec<NamedShot> = args.shots.iter().map(named_shot).collect::<Result<_>>()?;
+    let shots: Vec<NamedShot> = args
+        .shots
+        .iter()
+        .map(|file| named_shot(file))
+        .collect::<Result<_>>()?;
     let trials = Experiment::find(name)?.trials(scale, &shots)?;
     let report = measure(args, &trials)?;
     if let Some(folder) = &args.output {
@@ -63,7 +67,7 @@ pub fn run(args: &Args) -> Result<()> {
     print(&report.text())
 }
 
-fn named_shot(file: &PathBuf) -> Result<NamedShot> {
+fn named_shot(file: &Path) -> Result<NamedShot> {
     let shot = Shot::load(file, &Overrides::default())?;
     print_notes(&shot);
     Ok(NamedShot {

@@ -18,8 +18,9 @@ use super::busy::Busy;
 use super::report::Report;
 use super::{Experiment, Row, Scale, Trial};
 
-/// [s] The wall time after which a candidate gets no further frame.
-const SECONDS: (f64, f64, f64) = (2.0, 10.0, 60.0);
+/// [s] The wall time after which a candidate gets no further frame. The first frame of a setting may take ten of them
+/// where a CPU driver compiles.
+const SECONDS: f64 = 20.0;
 
 /// Where and with what to measure.
 pub struct Lab<'a> {
@@ -52,12 +53,11 @@ impl Trials {
     /// A truth cannot be traced, the device is lost, or interrupted.
     pub fn measure(&self, lab: &Lab) -> Result<Report> {
         let experiment = self.experiment;
-        let (quick, usual, paper) = SECONDS;
         let protocol = Protocol {
             repeat: lab
                 .frames
                 .unwrap_or(self.scale.pick(1, experiment.frames, experiment.frames)),
-            seconds: self.scale.pick(quick, usual, paper),
+            seconds: SECONDS,
             counters: experiment.counters,
             flicker_frames: 0,
             costs: DEFAULT_COSTS,

@@ -82,6 +82,13 @@ impl Report {
             Outcome::Measured(_) => None,
         };
         notes.extend(self.rows.iter().filter_map(failed));
+        let cold = |row: &&Row| row.run.measured().is_some_and(|measured| !measured.warm);
+        notes.extend(self.rows.iter().filter(cold).map(|row| {
+            format!(
+                "{}, {}, {}: its only frame has the driver's compiling in it; run it again",
+                row.scene, row.series, row.x
+            )
+        }));
         if self.machine.device_kind == "cpu" {
             notes.push(format!(
                 "{} is a CPU driver: its times are no GPU's",
@@ -144,7 +151,10 @@ impl Report {
             let mut record = vec![row.scene.clone(), row.series.clone(), row.x.to_string()];
             record.extend(experiment.columns.iter().map(|column| {
                 let value = (column.of)(row);
-                value.is_finite().then(|| number(value)).unwrap_or_default()
+                match value.is_finite() {
+                    true => number(value),
+                    false => String::new(),
+                }
             }));
             let failure = match &run.outcome {
                 Outcome::Failed(reason) => reason.clone(),

@@ -15,16 +15,20 @@ pub const OCCLUDER: f64 = 0.2;
 const LIGHT_HEIGHT: f64 = 1.0;
 /// [scene units] What of the ground is shown at most, to each side of the shadow's middle.
 const REACH_MAX: f64 = 1.2;
-/// [scene units] How far away the camera is: so far that all of the shadow counts about the same.
+/// [scene units] How far away the camera is: so far that all of a shadow counts about the same.
 const CAMERA: f64 = 10.0;
+/// [radian] By which the turned square is turned: no side nor diagonal of it follows the texels.
+const TURN: f64 = 0.35;
 /// [degree] How high it stands: so low that it sees most of the shadow below the occluder.
 const ELEVATION: f64 = 40.0;
 
 /// What stands between light and ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Model {
-    /// A horizontal square with sides along the map's.
+    /// A horizontal square with sides along the map's. The map is fitted to it, so its texels end where it ends.
     Square,
+    /// The same, turned, so that its sides cross the texels.
+    Turned,
     /// A torus knot, upright, in place of the Buddha: folds, and parts that hide one another.
     Knot,
     /// A figure of closed boxes with ears, in place of the Bunny, which stands on the ground.
@@ -32,21 +36,30 @@ pub enum Model {
 }
 
 impl Model {
-    pub const ALL: [Self; 3] = [Self::Square, Self::Knot, Self::Figure];
+    pub const ALL: [Self; 4] = [Self::Square, Self::Turned, Self::Knot, Self::Figure];
     pub const CLOSED: [Self; 2] = [Self::Knot, Self::Figure];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Square => "square",
+            Self::Turned => "turned square",
             Self::Knot => "knot",
             Self::Figure => "figure of boxes",
         }
     }
 
-    /// About the origin.
+    /// [radian] By which it is turned about y.
+    fn turn(self) -> f64 {
+        match self {
+            Self::Turned => TURN,
+            Self::Square | Self::Knot | Self::Figure => 0.0,
+        }
+    }
+
+    /// In its size, about the origin.
     fn shape(self) -> Shape {
         let shape = match self {
-            Self::Square => Shape::square(1.0),
+            Self::Square | Self::Turned => Shape::square(1.0),
             Self::Knot => knot(180),
             Self::Figure => figure(),
         };
@@ -94,7 +107,7 @@ impl Stage {
     pub fn usual(model: Model, light: f64) -> Self {
         let height = match model {
             Model::Figure => OCCLUDER / 2.0,
-            Model::Square | Model::Knot => LIGHT_HEIGHT / 2.0,
+            _ => LIGHT_HEIGHT / 2.0,
         };
         Self {
             model,
@@ -125,7 +138,11 @@ impl Stage {
 
     /// The shot with another shape in the model's place.
     pub fn shot_of(&self, shape: Shape, side: u32) -> Shot {
-        let shape = shape.fitted(OCCLUDER, self.center());
+        let mut shape = shape.fitted(OCCLUDER, DVec3::ZERO);
+        let (sin, cos) = self.model.turn().sin_cos();
+        for p in &mut shape.positions {
+            *p = DVec3::new(p.x * cos - p.z * sin, p.y, p.x * sin + p.z * cos) + self.center();
+        }
         let (middle, reach) = self.shadow(shape.bounds().1.y);
         let target = DVec3::new(middle, 0.0, 0.0);
         let (sin, cos) = ELEVATION.to_radians().sin_cos();
@@ -173,9 +190,10 @@ impl Stage {
     /// What is true of the shot: only the ground counts, as receivers and occluders are apart in the paper.
     pub fn truth(&self) -> Truth {
         match self.model {
-            Model::Square => Truth::Square(Square {
+            Model::Square | Model::Turned => Truth::Square(Square {
                 center: self.center(),
                 half: OCCLUDER / 2.0,
+                turn: self.model.turn(),
                 light: DVec3::Y * LIGHT_HEIGHT,
                 light_half: 0.5 * self.light,
             }),

@@ -1,6 +1,6 @@
 //! What counts as true in an experiment, and where.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::cpu::bvh::{Bvh, Ray};
 use crate::cpu::pinhole::Pinhole;
@@ -20,13 +20,15 @@ pub enum Truth {
     Square(Square),
 }
 
-/// A horizontal square over the ground y = 0, under a square light that is parallel to it; sides along x and z.
+/// A horizontal square over the ground y = 0, under a square light that is parallel to it, with sides along x and z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Square {
     /// [scene units] Its centre.
     pub center: DVec3,
     /// [scene units] Half its side.
     pub half: f64,
+    /// [radian] By which it is turned about y.
+    pub turn: f64,
     /// [scene units] The light's centre, and half its side.
     pub light: DVec3,
     pub light_half: f64,
@@ -38,19 +40,48 @@ const GROUND_HEIGHT: f64 = 1e-5;
 impl Square {
     /// [0, 1] The share of the light that a point of the ground sees.
     pub fn visibility(&self, from: DVec3) -> f64 {
-        // Seen from the point, the square covers an interval of the light along each axis.
+        let flat = |p: DVec3| DVec2::new(p.x, p.z);
+        // Seen from the point, the square covers a larger square of the light's plane.
         let scale = self.light.y / self.center.y;
-        let covered = |from: f64, center: f64, light: f64| {
-            let middle = from + (center - from) * scale;
-            let half = self.half * scale;
-            let low = (middle - half).max(light - self.light_half);
-            let high = (middle + half).min(light + self.light_half);
-            ((high - low) / (2.0 * self.light_half)).max(0.0)
-        };
-        let x = covered(from.x, self.center.x, self.light.x);
-        let z = covered(from.z, self.center.z, self.light.z);
-        1.0 - x * z
+        let middle = flat(from) + (flat(self.center) - flat(from)) * scale - flat(self.light);
+        let side = self.light_half;
+        let mut hidden = vec![
+            DVec2::new(-side, -side),
+            DVec2::new(side, -side),
+            DVec2::new(side, side),
+            DVec2::new(-side, side),
+        ];
+        let along = DVec2::from_angle(self.turn);
+        for normal in [along, along.perp(), -along, -along.perp()] {
+            clip(&mut hidden, normal, normal.dot(middle) + self.half * scale);
+        }
+        1.0 - area(&hidden) / (4.0 * side * side)
     }
+}
+
+/// Leaves of a convex polygon the points p with normal · p ≤ limit.
+fn clip(polygon: &mut Vec<DVec2>, normal: DVec2, limit: f64) {
+    let beyond = |p: DVec2| normal.dot(p) - limit;
+    let Some(&last) = polygon.last() else { return };
+    let mut kept = Vec::new();
+    let mut previous = last;
+    for &current in polygon.iter() {
+        let (before, after) = (beyond(previous), beyond(current));
+        if (before > 0.0) != (after > 0.0) {
+            kept.push(previous.lerp(current, before / (before - after)));
+        }
+        if after <= 0.0 {
+            kept.push(current);
+        }
+        previous = current;
+    }
+    *polygon = kept;
+}
+
+fn area(polygon: &[DVec2]) -> f64 {
+    let next = polygon.iter().cycle().skip(1);
+    let twice: f64 = polygon.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum();
+    0.5 * twice.abs()
 }
 
 impl Truth {
@@ -121,6 +152,7 @@ mod tests {
         let square = Square {
             center: DVec3::new(0.0, 1.5, 0.0),
             half: 0.5,
+            turn: 0.0,
             light: DVec3::new(0.0, 3.0, 0.0),
             light_half: 0.75,
         };
