@@ -147,6 +147,11 @@ impl Experiment {
         })
     }
 
+    /// What the rows say about the claim.
+    pub fn judge(&self, rows: &[Row]) -> Vec<Check> {
+        (self.judge)(rows)
+    }
+
     /// What is measured at a scale.
     ///
     /// # Errors

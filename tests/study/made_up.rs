@@ -38,6 +38,7 @@ pub fn run(shot: &str, technique: Technique, ms: f64, error: f64) -> Run {
         total_ms: spread,
         passes: BTreeMap::new(),
         memory_bytes: 1,
+        resources: BTreeMap::new(),
         errors: Errors {
             metrics,
             flip: error,

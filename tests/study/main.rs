@@ -1,5 +1,6 @@
 //! Studies: what they measure, that they go on where they were, that parts make a whole, and the page they end in.
 
+mod figure;
 mod made_up;
 mod page;
 mod program;

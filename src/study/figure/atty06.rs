@@ -1,6 +1,6 @@
 //! [Atty06]: the error over map size, light size and the occluder's place.
 
-use super::check::{Check, number, numbers};
+use super::check::{CLEAR, Check, number, numbers};
 use super::row::{Curve, ERROR, SHADOW_PIXELS};
 use super::stage::{Model, Stage};
 use super::{Candidate, Experiment, Row, Scale, Trial};
@@ -16,8 +16,6 @@ const VIEWS: &str = "packet-contour, S = 4";
 const MAP: u32 = 128;
 /// [scene units] The light of the figures that do not vary it.
 pub const LIGHT: f64 = 0.1;
-/// |τ| from which on a curve counts as rising or falling.
-const CLEAR: f64 = 0.6;
 /// How little a finer map may gain, as a share of the error, for the error to be at its limit.
 const LIMIT: f64 = 0.25;
 

@@ -1,7 +1,7 @@
 //! [Atty06]: time over map and light.
 
 use super::atty06::{LIGHT, PATCHES, patches, trial};
-use super::check::{Check, number};
+use super::check::{CLEAR, Check, all, number, numbers};
 use super::row::{Curve, ERROR, ERROR_ASIDE, TIME, TIME_MAX, TIME_MIN, only_scene};
 use super::stage::{Model, Stage, knot};
 use super::{Candidate, Experiment, Row, Trial};
@@ -12,8 +12,6 @@ const CONTOURS: &str = "packet-contour, S = 1";
 const LINEAR: (f64, f64) = (0.8, 1.2);
 /// How much more than the fine map's error a coarse map's may be to be similar.
 const SIMILAR: f64 = 1.25;
-/// τ from which on a curve counts as rising.
-const CLEAR: f64 = 0.6;
 
 pub const FIG22: Experiment = Experiment {
     name: "atty06-fig22",
@@ -126,20 +124,18 @@ fn judge_fig24(rows: &[Row]) -> Vec<Check> {
     let curve = |map, value| Curve::of(rows, only_scene(rows), &series(map), value);
     let mut checks = Vec::new();
     for (what, value) in [("time", Row::ms as fn(&Row) -> f64), ("error", Row::error)] {
-        let trends: Vec<(u32, f64)> = MAPS
+        let trends: Vec<f64> = MAPS
             .into_iter()
-            .map(|map| (map, curve(map, value)))
-            .filter(|(_, curve)| !curve.0.is_empty())
-            .map(|(map, curve)| (map, curve.trend()))
-            .collect();
-        let found: Vec<String> = trends
-            .iter()
-            .map(|(map, trend)| format!("τ = {} for {map}x{map}", number(*trend)))
+            .map(|map| curve(map, value).trend())
+            .filter(|trend| trend.is_finite())
             .collect();
         checks.push(Check::new(
             format!("the {what} rises with the light (τ ≥ {CLEAR}) under every map"),
-            found.join(", "),
-            trends.iter().all(|&(_, trend)| trend >= CLEAR),
+            format!(
+                "τ = {} under maps of 64, 128 and 256",
+                numbers(trends.iter().copied())
+            ),
+            all(&trends, |trend| trend >= CLEAR),
         ));
     }
     let ratio = |pick: fn(&Curve) -> f64| {

@@ -4,6 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
+/// |τ| from which on a curve counts as rising or falling, see `Curve::trend`.
+pub(super) const CLEAR: f64 = 0.6;
+
 /// One thing that a publication says, and whether it was found here.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
@@ -54,6 +57,11 @@ impl fmt::Display for Verdict {
             Self::Differs => "it differs",
         })
     }
+}
+
+/// Whether there are values, and all of them are so.
+pub(super) fn all(values: &[f64], are: impl Fn(f64) -> bool) -> bool {
+    !values.is_empty() && values.iter().all(|&value| are(value))
 }
 
 /// A number in four digits; "—" is none.

@@ -19,8 +19,8 @@ use super::report::Report;
 use super::{Experiment, Row, Scale, Trial};
 
 /// [s] The wall time after which a candidate gets no further frame. The first frame of a setting may take ten of them
-/// where a CPU driver compiles.
-const SECONDS: f64 = 20.0;
+/// where a CPU driver compiles; the smallest scale has no time to judge, so every candidate gets its frame.
+const SECONDS: [f64; 3] = [600.0, 30.0, 60.0];
 
 /// Where and with what to measure.
 pub struct Lab<'a> {
@@ -53,11 +53,12 @@ impl Trials {
     /// A truth cannot be traced, the device is lost, or interrupted.
     pub fn measure(&self, lab: &Lab) -> Result<Report> {
         let experiment = self.experiment;
+        let [quick, usual, paper] = SECONDS;
         let protocol = Protocol {
             repeat: lab
                 .frames
                 .unwrap_or(self.scale.pick(1, experiment.frames, experiment.frames)),
-            seconds: SECONDS,
+            seconds: self.scale.pick(quick, usual, paper),
             counters: experiment.counters,
             flicker_frames: 0,
             costs: DEFAULT_COSTS,
@@ -81,7 +82,7 @@ impl Trials {
             machine: Machine::of(lab.gpu),
             frames: protocol.repeat,
             others: busy.others(),
-            checks: (experiment.judge)(&rows),
+            checks: experiment.judge(&rows),
             rows,
             notes,
         })

@@ -1,5 +1,7 @@
 //! Plots of curves: a row of panels for each figure, a panel for each scene.
 
+use std::ops::Range;
+
 use plotters::prelude::*;
 
 use crate::Result;
@@ -8,11 +10,16 @@ use super::super::plot::{Area, failed, muted, short};
 use super::row::distinct;
 use super::{Column, Experiment, Row};
 
-/// [pixel] Of a panel, of a line of the legend, and of a character of it.
+/// [pixel] Of a panel, and of a line of the legend.
 const PANEL: (u32, u32) = (460, 320);
 const LINE: i32 = 20;
+/// [pixel] Of the plot, so that its title has room.
+const WIDTH_MIN: u32 = 760;
+/// How many times the smallest value the largest is where an axis is logarithmic.
+const X_WIDE: f64 = 4.0;
+const Y_WIDE: f64 = 20.0;
 
-/// The plotted columns of all rows as an SVG, axes logarithmic where the values are positive.
+/// The plotted columns of all rows as an SVG, axes logarithmic where the values span much.
 ///
 /// # Errors
 /// It cannot be drawn.
@@ -22,7 +29,7 @@ pub fn curves(experiment: &Experiment, rows: &[Row]) -> Result<String> {
     let plotted = || experiment.columns.iter().filter(|column| column.plotted);
     let legend = LINE as u32 * (series.len() as u32 + 2);
     let size = (
-        PANEL.0 * scenes.len().max(1) as u32,
+        (PANEL.0 * scenes.len() as u32).max(WIDTH_MIN),
         legend + PANEL.1 * plotted().count() as u32,
     );
     let mut svg = String::new();
@@ -64,10 +71,10 @@ fn draw_legend(area: &Area, experiment: &Experiment, series: &[&str]) -> Result<
 struct Axis(Option<f64>);
 
 impl Axis {
-    /// Logarithmic where all values are more than 0.
-    fn of(values: impl Iterator<Item = f64> + Clone, base: f64) -> Self {
-        let positive = values.clone().all(|value| value > 0.0);
-        Self(positive.then_some(base))
+    /// Logarithmic where all values are more than 0 and the largest is at least `wide` times the smallest.
+    fn of(values: impl Iterator<Item = f64>, base: f64, wide: f64) -> Self {
+        let (low, high) = extremes(values);
+        Self((low > 0.0 && high >= wide * low).then_some(base))
     }
 
     fn place(self, value: f64) -> f64 {
@@ -78,19 +85,24 @@ impl Axis {
         short(self.0.map_or(place, |base| base.powf(place)))
     }
 
-    /// Around all places, with some air.
-    fn range(self, values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
-        let (low, high) = values
-            .map(|value| self.place(value))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
-                (low.min(place), high.max(place))
-            });
-        let air = 0.06 * (high - low).max(0.5 * high.abs().max(1e-6));
+    /// Around all places, with some air; from 0 on where the values themselves are placed.
+    fn range(self, values: impl Iterator<Item = f64>) -> Range<f64> {
+        let (low, high) = extremes(values.map(|value| self.place(value)));
+        let low = if self.0.is_none() { low.min(0.0) } else { low };
+        let air = 0.06 * (high - low).max(1e-9);
         match low.is_finite() {
+            true if self.0.is_none() && low == 0.0 => 0.0..high + air,
             true => low - air..high + air,
             false => 0.0..1.0,
         }
     }
+}
+
+/// (∞, −∞) without values.
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    })
 }
 
 fn draw_panel(
@@ -110,7 +122,10 @@ fn draw_panel(
     };
     let all: Vec<(f64, f64)> = series.iter().flat_map(|name| points(name)).collect();
     let (xs, ys) = (all.iter().map(|p| p.0), all.iter().map(|p| p.1));
-    let (x, y) = (Axis::of(xs.clone(), 2.0), Axis::of(ys.clone(), 10.0));
+    let (x, y) = (
+        Axis::of(xs.clone(), 2.0, X_WIDE),
+        Axis::of(ys.clone(), 10.0, Y_WIDE),
+    );
     let mut chart = ChartBuilder::on(area)
         .caption(scene, ("sans-serif", 14))
         .margin(10)

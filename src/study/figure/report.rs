@@ -85,7 +85,7 @@ impl Report {
         let cold = |row: &&Row| row.run.measured().is_some_and(|measured| !measured.warm);
         notes.extend(self.rows.iter().filter(cold).map(|row| {
             format!(
-                "{}, {}, {}: its only frame has the driver's compiling in it; run it again",
+                "{}, {}, {}: its first frame used up its time and may have the driver's compiling in it, so it has no time",
                 row.scene, row.series, row.x
             )
         }));
@@ -152,7 +152,7 @@ impl Report {
             record.extend(experiment.columns.iter().map(|column| {
                 let value = (column.of)(row);
                 match value.is_finite() {
-                    true => number(value),
+                    true => value.to_string(),
                     false => String::new(),
                 }
             }));

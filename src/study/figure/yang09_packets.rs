@@ -1,6 +1,6 @@
 //! [Yang09]: what packets and the hierarchy save.
 
-use super::check::{Check, number, numbers};
+use super::check::{Check, all, number, numbers};
 use super::row::{Curve, ERROR_ASIDE, TIME_ASIDE, distinct, only_scene};
 use super::yang09::{FLAT, HIERARCHICAL, PACKETS, hierarchical, knot, packets, rival};
 use super::{Candidate, Column, Experiment, Row, Trial, Truth};
@@ -146,17 +146,17 @@ fn judge_fig12(rows: &[Row]) -> Vec<Check> {
         Check::new(
             "packets beat single pixels in every size",
             sides.clone(),
-            best.iter().all(|&side| side > 1.0),
+            all(&best, |side| side > 1.0),
         ),
         Check::new(
             "the best packet does not shrink as the image grows",
             sides,
-            best.is_sorted(),
+            !best.is_empty() && best.is_sorted(),
         ),
         Check::new(
             "2x2 or 3x3 takes at most 1.25 times as long as the best in every size",
             format!("{} times", numbers(slower.iter().copied())),
-            slower.iter().all(|&ratio| ratio <= GOOD),
+            all(&slower, |ratio| ratio <= GOOD),
         ),
     ]
 }
@@ -181,12 +181,12 @@ fn judge_fig13(rows: &[Row]) -> Vec<Check> {
         Check::new(
             "packets are faster than single pixels under every light",
             times(&shared),
-            !shared.is_empty() && shared.iter().all(|&ratio| ratio > 1.0),
+            all(&shared, |ratio| ratio > 1.0),
         ),
         Check::new(
             "the hierarchy is at least 1.5 times as fast under every light",
             times(&pruned),
-            !pruned.is_empty() && pruned.iter().all(|&ratio| ratio >= HIERARCHY),
+            all(&pruned, |ratio| ratio >= HIERARCHY),
         ),
         Check::new(
             "together they are ten times as fast under the largest light",
