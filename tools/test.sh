@@ -12,6 +12,7 @@ usage() {
     echo "  --slow         the exhaustive versions of the tests that have one"
     echo "  --driver NAME  the tests that render, on another driver: swiftshader, which is fetched"
     echo "  --width BITS   the same on lavapipe with vectors of 128, 256 or 512 bits: subgroups of 4, 8 or 16"
+    echo "                 (Mesa 22.3 crashes with 512 where the CPU has none: see docs/drivers.md)"
     echo "  --gpu-av       the same under GPU-assisted validation, which finds accesses out of bounds"
 }
 
@@ -64,7 +65,7 @@ slow_tests() {
 # The tests whose results a driver could change.
 rendering_tests() {
     cargo test --test canary --test passes --test agreement --test closed_forms --test properties \
-        --test techniques --test faults --test cycles
+        --test techniques --test drivers --test faults --test cycles
 }
 
 # Debian's Chromium brings a second Vulkan driver, which needs no installation.
