@@ -82,8 +82,14 @@ impl Report {
             Outcome::Measured(_) => None,
         };
         notes.extend(self.rows.iter().filter_map(failed));
+        let lacks = |row: &&Row| {
+            self.experiment
+                .columns
+                .iter()
+                .any(|column| (column.of)(row).is_nan())
+        };
         let cold = |row: &&Row| row.run.measured().is_some_and(|measured| !measured.warm);
-        notes.extend(self.rows.iter().filter(cold).map(|row| {
+        notes.extend(self.rows.iter().filter(cold).filter(lacks).map(|row| {
             format!(
                 "{}, {}, {}: its first frame used up its time and may have the driver's compiling in it, so it has no time",
                 row.scene, row.series, row.x

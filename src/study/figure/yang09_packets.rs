@@ -196,7 +196,7 @@ fn judge_fig13(rows: &[Row]) -> Vec<Check> {
         Check::new(
             "without loss of accuracy (mean errors within 0.0001 of each other)",
             format!("{} apart", number(spread)),
-            spread <= SAME_ERROR,
+            (0.0..=SAME_ERROR).contains(&spread),
         ),
     ]
 }
