@@ -52,6 +52,7 @@ fn main() {
     }
     table.push_str("];\n");
     fs::write(out.join("shaders.rs"), table).expect("OUT_DIR is writable");
+    name_shared_library();
     println!("cargo:rustc-env=HALFSHADE_COMMIT={}", commit());
 }
 
@@ -235,4 +236,13 @@ fn member_name(module: &Module, id: u32) -> Option<&str> {
             ] if *target == id => Some(name.as_str()),
             _ => None,
         })
+}
+
+/// Programs that are linked to the C library ask for it by the version of its binary interface; a test compares
+/// it with `HS_ABI_VERSION`. cargo-c gives the name itself, from the same number in `Cargo.toml`.
+fn name_shared_library() {
+    let linux = env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "linux");
+    if linux && env::var_os("CARGO_FEATURE_CAPI").is_some() {
+        println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libhalfshade.so.1");
+    }
 }

@@ -11,6 +11,7 @@ layout(local_size_x = 1) in;
 layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
 layout(binding = 1, scalar) readonly buffer Views { View views[]; };
 layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
+layout(binding = 3, scalar) readonly buffer Givens { Given givens[]; };
 
 // Extent of one axis at most this many times the other's: kernels stay near to square.
 const float ASPECT_MAX = 8.0;
@@ -29,8 +30,12 @@ void main() {
     Fit fit = fits[push.index];
     View view = views[push.index];
     uvec2 tiles = (frame.size + TILE_SIZE - 1u) / TILE_SIZE;
-    bool empty = fit.caster_bounds[4] == 0u;
-    if (!empty) {
+    bool empty = GIVEN ? fit.receiver_count == 0u : fit.caster_bounds[4] == 0u;
+    if (GIVEN) {
+        fit.near = givens[push.index].near;
+        fit.focal = givens[push.index].focal;
+        fit.center = givens[push.index].center;
+    } else if (!empty) {
         vec2 upper = vec2(value_of(fit.caster_bounds[0], 0.0), value_of(fit.caster_bounds[1], 0.0));
         vec2 lower = -vec2(value_of(fit.caster_bounds[2], 0.0), value_of(fit.caster_bounds[3], 0.0));
         vec2 extent = max(upper - lower, vec2(1e-5));
@@ -40,6 +45,8 @@ void main() {
         fit.near = -value_of(fit.caster_bounds[4], 0.0) * 0.999;
         fit.focal = inner / extent;
         fit.center = 0.5 * (float(view.map_size) - 1.0) - fit.focal * middle;
+    }
+    if (!empty) {
         float side = float(view.map_size);
         if (!OBLIQUE) {
             vec2 largest = min(largest_kernel(view, fit), vec2(side));

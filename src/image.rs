@@ -1,11 +1,17 @@
 //! Images in memory and in files: OpenEXR for numbers, PNG for looking at, all written atomically.
 
+#[cfg(feature = "cli")]
 mod atomic;
+#[cfg(feature = "cli")]
 mod exr_file;
+#[cfg(feature = "cli")]
 mod png_file;
 
+#[cfg(feature = "cli")]
 pub use atomic::{check_writable, write_atomically};
+#[cfg(feature = "cli")]
 pub use exr_file::{read_exr, write_exr};
+#[cfg(feature = "cli")]
 pub use png_file::{RgbImage, read_png, write_png};
 
 use crate::{Error, Result};

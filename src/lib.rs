@@ -1,13 +1,15 @@
 //! Soft shadows of area lights.
+#[cfg(feature = "capi")]
+pub mod c_api;
 #[cfg(feature = "cli")]
 pub mod calibrate;
 #[cfg(feature = "cli")]
 pub mod compare;
-#[cfg(feature = "cli")]
+#[cfg(feature = "reference")]
 pub mod cpu;
 pub mod error;
 pub mod gpu;
-#[cfg(feature = "cli")]
+#[cfg(feature = "reference")]
 pub mod image;
 pub mod plan;
 pub mod render;

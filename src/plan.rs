@@ -2,6 +2,7 @@
 //! asked for and of the device's limits. What is recorded equals what is planned.
 
 mod camera;
+mod host;
 mod memory;
 mod omissions;
 mod survey;
@@ -13,12 +14,15 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
-use crate::shared::{self, LEVELS_MAX, ROUNDS_MAX, View};
-use crate::shot::Shot;
+use crate::shared::{self, LEVELS_MAX, ROUNDS_MAX, SECTOR_STEPS, View};
+use crate::shot::{Settings, Shot};
 use crate::technique::{self, Recipe};
 use camera::Frustum;
+use memory::Inventory;
 use survey::{Survey, survey};
-use views::{view_plan, whole_light};
+
+pub use host::{HostFrame, plan_for_host};
+pub use views::{Aspect, Site};
 
 /// What the caller wants to have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,9 +31,33 @@ pub struct Outputs {
     pub picture: bool,
 }
 
+/// Where the visible surface comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Front {
+    /// The scene is drawn.
+    Drawn,
+    /// A host's images are read.
+    Imported,
+}
+
+/// Where the shadow maps come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Casters {
+    /// The scene's triangles, fitted to and drawn.
+    Scene,
+    /// The triangles of a host's meshes, gathered at the start of the frame; then as for a scene.
+    Gathered,
+    /// A host draws them itself.
+    DrawnByHost,
+    /// A host has the maps already.
+    Maps,
+}
+
 /// A frame, completely.
 #[derive(Debug, Clone)]
 pub struct Plan {
+    pub front: Front,
+    pub casters: Casters,
     /// [pixel]
     pub size: (u32, u32),
     pub frame: shared::Frame,
@@ -106,6 +134,8 @@ pub struct ViewPlan {
     pub variant: Variant,
     /// Sector table of a sub-light that a disc's rim cuts.
     pub sectors: Option<Arc<[f32]>>,
+    /// What the view was planned from.
+    pub aspect: Aspect,
 }
 
 /// Which pipelines a view needs.
@@ -130,29 +160,31 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
     shot.validate()?;
     let frustum = Frustum::new(shot);
     let mut plan = Plan {
-        size: (shot.width, shot.height),
-        frame: frustum.frame(shot),
-        lights: Vec::new(),
-        outputs,
-        levels: 0,
-        mssm_bits: shot.settings.mssm_bits,
-        map: 0,
-        loop_turns: limits.loop_turns,
-        packet: shot.settings.packet,
         textured: !shot.scene.textures.is_empty() && (outputs.picture || shot.scene.has_masked()),
         masked: shot.scene.has_masked(),
-        passes: Vec::new(),
-        resources: Vec::new(),
-        omissions: Vec::new(),
+        ..Plan::empty(
+            (shot.width, shot.height),
+            frustum.frame(shot),
+            outputs,
+            &shot.settings,
+            limits,
+        )
+    };
+    let site = Site {
+        origin: shot.scene.origin,
+        map: shot.settings.map,
+        bias: shot.settings.bias,
+        levels: 0,
     };
     for light in &shot.lights {
         let found = survey(&shot.scene, &frustum, light);
-        plan.add_light(shot, light, found);
+        let radiance = views::radiance(shot, light);
+        plan.add_light(&shot.settings, &site, light, found, radiance);
     }
-    plan.size_map(shot, limits)?;
+    plan.size_map(&shot.settings, limits)?;
     let retained = retained && plan.views().count() == 1;
     plan.list_passes(retained);
-    plan.list_resources(shot);
+    plan.list_resources(&shot.settings, &Inventory::of(&shot.scene));
     plan.list_omissions(shot, retained);
     plan.check(limits)?;
     Ok(plan)
@@ -163,7 +195,42 @@ impl Plan {
         self.lights.iter().flat_map(|light| &light.views)
     }
 
-    fn add_light(&mut self, shot: &Shot, light: &AreaLight, found: Survey) {
+    /// A plan of a drawn scene, without lights yet.
+    fn empty(
+        size: (u32, u32),
+        frame: shared::Frame,
+        outputs: Outputs,
+        settings: &Settings,
+        limits: &Limits,
+    ) -> Self {
+        Self {
+            front: Front::Drawn,
+            casters: Casters::Scene,
+            size,
+            frame,
+            lights: Vec::new(),
+            outputs,
+            levels: 0,
+            mssm_bits: settings.mssm_bits,
+            map: 0,
+            loop_turns: limits.loop_turns,
+            packet: settings.packet,
+            textured: false,
+            masked: false,
+            passes: Vec::new(),
+            resources: Vec::new(),
+            omissions: Vec::new(),
+        }
+    }
+
+    fn add_light(
+        &mut self,
+        settings: &Settings,
+        site: &Site,
+        light: &AreaLight,
+        found: Survey,
+        radiance: [f32; 3],
+    ) {
         let outcome = match found {
             Survey {
                 receivers: false, ..
@@ -171,18 +238,38 @@ impl Plan {
             Survey { casters: false, .. } => Outcome::Unshadowed,
             _ => Outcome::Shadowed,
         };
-        let parts = technique::parts(light, &shot.settings);
+        let parts = technique::parts(light, settings);
         let faces: Vec<usize> = (0..5).filter(|&face| found.faces[face]).collect();
         let view_first = self.views().count() as u32;
+        let tables = self.views().filter(|view| view.sectors.is_some()).count() as u32;
+        let mut sector_first = tables * (SECTOR_STEPS + 1);
         let mut views = Vec::new();
         if outcome == Outcome::Shadowed {
             let accumulate = parts.len() * faces.len() > 1;
             for part in &parts {
-                views.extend(
-                    faces
-                        .iter()
-                        .map(|&face| view_plan(shot, light, part, face, &faces, accumulate)),
-                );
+                views.extend(faces.iter().map(|&face| {
+                    let aspect = Aspect {
+                        part: part.clone(),
+                        face,
+                        sides: faces.len() > 1,
+                    };
+                    let sectors = aspect.sectors();
+                    let mut view = aspect.view(site, light, 0);
+                    if let Some(table) = &sectors {
+                        view.sector_first = sector_first;
+                        sector_first += table.len() as u32;
+                    }
+                    ViewPlan {
+                        view,
+                        variant: Variant {
+                            round: sectors.is_some(),
+                            oblique: face != 0,
+                            accumulate,
+                        },
+                        sectors,
+                        aspect,
+                    }
+                }));
             }
         }
         let name = if light.name.is_empty() {
@@ -190,21 +277,23 @@ impl Plan {
         } else {
             light.name.clone()
         };
+        let weight_sum = views::weight_sum(&parts);
+        let view_range = view_first..view_first + views.len() as u32;
         self.lights.push(LightPlan {
             name,
-            light: whole_light(shot, light, &parts, view_first, views.len() as u32),
+            light: views::whole_light(site.origin, light, radiance, weight_sum, view_range),
             outcome,
             views,
             part_count: parts.len(),
-            recipe: Recipe::new(&shot.settings, light.is_point()),
+            recipe: Recipe::new(settings, light.is_point()),
         });
     }
 
-    fn size_map(&mut self, shot: &Shot, limits: &Limits) -> Result<()> {
+    fn size_map(&mut self, settings: &Settings, limits: &Limits) -> Result<()> {
         if self.views().next().is_none() {
             return Ok(());
         }
-        let side = shot.settings.map;
+        let side = settings.map;
         if side > limits.image_side {
             return Err(Error::Unsupported(format!(
                 "a map of {side} texels is more than the device's {}; choose a smaller --map",
@@ -266,7 +355,16 @@ impl Plan {
                 }
             }
         };
-        add("gbuffer", 1);
+        match self.front {
+            Front::Drawn => add("gbuffer", 1),
+            Front::Imported => {
+                add("update", 1);
+                add("import_surface", 1);
+            }
+        }
+        if self.casters == Casters::Gathered {
+            add("gather", 1);
+        }
         if self.views().next().is_some() {
             add("clear_fits", u32::from(!retained));
             add("clear_lists", u32::from(self.needs(Recipe::has_lists)));
@@ -280,6 +378,7 @@ impl Plan {
             add("resolve", 1);
         }
         add("shade", u32::from(self.outputs.picture));
+        add("export", u32::from(self.front == Front::Imported));
         self.passes = passes;
     }
 
@@ -287,7 +386,7 @@ impl Plan {
     fn view_passes(&self, light: &LightPlan, retained: bool) -> Vec<(&'static str, u32)> {
         let mut passes = Vec::new();
         if !retained {
-            passes.extend(["receivers", "casters", "fit", "shadow_map"].map(|name| (name, 1)));
+            passes.extend(self.map_passes().iter().map(|name| (*name, 1)));
             if light.recipe.mssm {
                 passes.push(("mssm", self.levels));
             }
@@ -301,6 +400,15 @@ impl Plan {
         }
         passes.extend(light.recipe.stages.iter().map(|stage| (stage.name, 1)));
         passes
+    }
+
+    /// What is recorded for a view's shadow map.
+    fn map_passes(&self) -> &'static [&'static str] {
+        match self.casters {
+            Casters::Scene | Casters::Gathered => &["receivers", "casters", "fit", "shadow_map"],
+            Casters::DrawnByHost => &["receivers", "region", "fit", "projection", "shadow_map"],
+            Casters::Maps => &["receivers", "fit", "shadow_map"],
+        }
     }
 
     /// Whether the last frame's shadow map is kept.

@@ -1,23 +1,28 @@
 //! The frame: front, technique, back.
 
+mod chain;
 mod counts;
+mod effect;
 mod resources;
 mod specialization;
 mod view;
 
-use std::collections::{BTreeMap, btree_map::Entry};
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Attachments, Buffer, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, ImageKind,
-    Recorder, Resources, Timings,
+    Attachments, Buffer, Commands, Draw, Gpu, GraphicsPass, GraphicsState, ImageKind, Recorder,
+    Resources, Timings,
 };
-use crate::plan::{Outputs, Plan, Variant, plan};
+use crate::plan::{Outputs, Plan, plan};
 use crate::shared::{Costs, Counters, Exposure, Fit, Push};
 use crate::shot::Shot;
-use crate::technique::Recipe;
-use view::{ViewPasses, tiles};
+use chain::Chain;
+use view::Maps;
+
+pub use effect::{
+    CasterImages, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, SlotImages, Surface,
+};
 
 /// Cost model [Yang09 eq. 6], Q_n = 1. On lavapipe the time hardly depends on it as long as Q_v is not far
 /// above Q_e, and a search on a busy machine found nothing better; `halfshade calibrate` measures it elsewhere.
@@ -67,9 +72,7 @@ pub struct Renderer {
     kept: Plan,
     resources: Resources,
     gbuffer: GraphicsPass,
-    views: BTreeMap<(Variant, Recipe), ViewPasses>,
-    resolve: ComputePass,
-    shade: Option<ComputePass>,
+    chain: Chain,
     recorder: Recorder,
     /// The last frame's map and MSSM are still there.
     retained: bool,
@@ -92,54 +95,35 @@ impl Renderer {
         let fresh = plan(shot, options.outputs, &gpu.limits, false)?;
         let kept = plan(shot, options.outputs, &gpu.limits, true)?;
         let plan = &fresh;
+        // First, because where nothing can be submitted nothing else is worth its time.
+        let recorded: u32 = plan.passes.iter().map(|(_, count)| count).sum();
+        let recorder = Recorder::new(gpu, recorded)?;
         let exposure = Exposure {
             light_count: plan.lights.len() as u32,
             ..options.exposure
         };
         let resources = resources::create(gpu, plan, shot, options.costs, exposure)?;
-        let mut views = BTreeMap::new();
-        for light in &plan.lights {
-            for planned in &light.views {
-                let key = (planned.variant, light.recipe.clone());
-                if let Entry::Vacant(vacant) = views.entry(key) {
-                    vacant.insert(ViewPasses::new(
-                        gpu,
-                        plan,
-                        &shot.settings,
-                        &light.recipe,
-                        planned.variant,
-                        &resources,
-                    )?);
-                }
-            }
-        }
+        let chain = Chain::new(gpu, plan, &shot.settings, &resources, &[])?;
         let constants = specialization::of_frame(plan);
-        let compute =
-            |name: &str, shader: &str| ComputePass::new(gpu, name, shader, &constants, &resources);
         let state = GraphicsState {
             vertex: "gbuffer.vert",
             fragment: Some("gbuffer.frag"),
-            colors: &[ImageKind::Vector, ImageKind::Vector, ImageKind::Color],
+            colors: &[ImageKind::Vector, ImageKind::Vector, ImageKind::Color]
+                .map(ImageKind::format),
+            depth: true,
         };
-        let recorded: u32 = plan.passes.iter().map(|(_, count)| count).sum();
         let mut renderer = Self {
             gbuffer: GraphicsPass::new(gpu, "gbuffer", &state, &constants, &resources)?,
-            resolve: compute("resolve", "resolve.comp")?,
-            shade: options
-                .outputs
-                .picture
-                .then(|| compute("shade", "shade.comp"))
-                .transpose()?,
-            recorder: Recorder::new(gpu, recorded)?,
+            chain,
+            recorder,
             gpu: gpu.clone(),
             fresh,
             kept,
             resources,
-            views,
             retained: false,
         };
         renderer.recorder.begin()?;
-        renderer.recorder.initialize(&renderer.resources);
+        renderer.recorder.commands().initialize(&renderer.resources);
         renderer.recorder.submit_and_wait()?;
         Ok(renderer)
     }
@@ -211,63 +195,30 @@ impl Renderer {
 
     /// `only`: the view to which the frame is limited.
     fn record(&mut self, only: Option<u32>) -> Result<()> {
-        let plan = if self.retained {
-            &self.kept
-        } else {
-            &self.fresh
+        let plan = match self.retained {
+            true => &self.kept,
+            false => &self.fresh,
         };
-        let (resources, recorder) = (&self.resources, &mut self.recorder);
-        let frame = Push::default();
-        let colors = ["position_world", "normal_world", "albedo"].map(|name| resources.image(name));
-        let [position, normal, albedo] = colors;
+        let (resources, mut commands) = (&self.resources, self.recorder.commands());
+        let image = |name| Ok(resources.image(name)?.target());
         let attachments = Attachments {
-            colors: &[position?, normal?, albedo?],
-            depth: resources.image("camera_depth")?,
+            colors: &[
+                image("position_world")?,
+                image("normal_world")?,
+                image("albedo")?,
+            ],
+            depth: Some(image("camera_depth")?),
             margin: 0,
         };
         let vertices = 3 * (plan.frame.opaque_count + plan.frame.masked_count);
-        recorder.draw(
-            "gbuffer",
-            frame,
-            &attachments,
-            &[(&self.gbuffer, Draw::Vertices(vertices))],
-        );
-
-        let retained = plan.is_retained();
-        if plan.views().next().is_some() {
-            if !retained {
-                recorder.clear("clear_fits", resources.buffer("fits")?);
-            }
-            if plan.needs(Recipe::has_lists) {
-                recorder.clear("clear_lists", resources.buffer("lists")?);
-            }
-        }
-        for (index, light) in plan.lights.iter().enumerate() {
-            if light.accumulates() {
-                recorder.clear("clear_occlusion", resources.buffer("occlusion")?);
-            }
-            let views = (light.light.view_first..).zip(&light.views);
-            for (view, planned) in views.filter(|(view, _)| only.is_none_or(|only| only == *view)) {
-                let passes = &self.views[&(planned.variant, light.recipe.clone())];
-                if !retained {
-                    passes.record_map(recorder, plan, resources, view)?;
-                }
-                passes.record_stages(recorder, plan, resources, view)?;
-            }
-            let push = Push {
-                index: index as u32,
-                level: 0,
-            };
-            recorder.dispatch("resolve", &self.resolve, push, Groups::Direct(tiles(plan)));
-        }
-        if let Some(shade) = &self.shade {
-            recorder.dispatch("shade", shade, frame, Groups::Direct(tiles(plan)));
-        }
-        Ok(())
+        let draw = (self.gbuffer.with(0), Draw::Vertices(vertices));
+        commands.draw("gbuffer", Push::default(), &attachments, [draw]);
+        self.chain
+            .record(&mut commands, plan, resources, &mut Maps::Own, only)
     }
 
     /// The names of the last frame's passes, as recorded.
-    pub fn recorded(&self) -> &[String] {
+    pub fn recorded(&self) -> &[&'static str] {
         self.recorder.names()
     }
 
@@ -275,16 +226,16 @@ impl Renderer {
     pub fn read_buffer<T: bytemuck::Pod>(&self, name: &str, count: usize) -> Result<Vec<T>> {
         let buffer = self.resources.buffer(name)?;
         let bytes = (count * size_of::<T>()) as u64;
-        self.read_back(name, bytes, count, |recorder, target| {
-            recorder.copy_buffer("readback", buffer, target)
+        self.read_back(name, bytes, count, |commands, target| {
+            commands.copy_buffer("readback", buffer, target)
         })
     }
 
     /// What an image holds after a frame: all layers, row by row, `count` values.
     pub fn read_image<T: bytemuck::Pod>(&self, name: &str, count: usize) -> Result<Vec<T>> {
         let image = self.resources.image(name)?;
-        self.read_back(name, image.bytes(), count, |recorder, target| {
-            recorder.copy_image("readback", image, target)
+        self.read_back(name, image.bytes(), count, |commands, target| {
+            commands.copy_image("readback", image, target)
         })
     }
 
@@ -294,12 +245,12 @@ impl Renderer {
         name: &str,
         bytes: u64,
         count: usize,
-        copy: impl FnOnce(&mut Recorder, &Buffer),
+        copy: impl FnOnce(&mut Commands, &Buffer),
     ) -> Result<Vec<T>> {
         let target = Buffer::readback(&self.gpu, &format!("{name} (readback)"), bytes)?;
         let mut recorder = Recorder::new(&self.gpu, 0)?;
         recorder.begin()?;
-        copy(&mut recorder, &target);
+        copy(&mut recorder.commands(), &target);
         recorder.submit_and_wait()?;
         target.read(count)
     }
@@ -336,17 +287,16 @@ impl Renderer {
     /// The renderer makes no picture, `visibility` has not a value for each light and pixel, or a Vulkan call failed.
     pub fn picture_of(&mut self, visibility: &[f32]) -> Result<Vec<u8>> {
         let expected = self.pixel_count() * self.fresh.lights.len();
-        let Some(shade) = self.shade.as_ref().filter(|_| visibility.len() == expected) else {
+        if !self.fresh.outputs.picture || visibility.len() != expected {
             return Err(Error::Invalid(format!(
                 "{} values of visibility make no picture where {expected} are needed, or none was asked for",
                 visibility.len()
             )));
-        };
+        }
         self.resources.buffer("visibility")?.upload(visibility)?;
         self.recorder.begin()?;
-        let groups = Groups::Direct(tiles(&self.fresh));
-        self.recorder
-            .dispatch("shade", shade, Push::default(), groups);
+        self.chain
+            .record_shade(&mut self.recorder.commands(), &self.fresh);
         self.recorder.submit_and_wait()?;
         self.picture()
     }

@@ -11,11 +11,13 @@ mod material;
 mod notes;
 mod shape;
 mod tree;
+mod triangles;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub(crate) use geometry::MAX_COORDINATE;
 pub use shape::Shape;
+pub use triangles::Triangles;
 
 /// A scene, flattened into one list of triangles in one space.
 ///

@@ -127,6 +127,12 @@ shared_constants! {
     /// Kernel of a pixel that this view has nothing to say about: no surface there, another face's
     /// receiver, or one that faces away.
     KERNEL_NONE: uint = 3;
+    /// A host's normals are stored as they are, each component from −1 to 1.
+    NORMAL_SIGNED: uint = 0;
+    /// They are moved to [0, 1].
+    NORMAL_UNSIGNED: uint = 1;
+    /// They are folded to an octahedron, whose x and y are moved to [0, 1].
+    NORMAL_OCTAHEDRAL: uint = 2;
 }
 
 shared! {
@@ -345,5 +351,62 @@ shared! {
         /// [radiance] Constant light from everywhere.
         ambient: float,
         light_count: uint,
+    }
+
+    /// What a host's images mean.
+    struct Host {
+        /// Columns of the matrix from clip space to the world, for depths.
+        world_from_clip: vec4 [4],
+        /// Columns of the matrix from the normals' space to the world.
+        normal_to_world: vec3 [3],
+        /// One of `NORMAL_…`.
+        normal_encoding: uint,
+        /// The depth where there is no surface.
+        depth_empty: float,
+        /// [0, 1] Visibility that is exported where there is no surface.
+        background: float,
+    }
+
+    /// A host's mesh at a place.
+    struct Instance {
+        /// Rows of the matrix from the mesh to the world.
+        transform: vec4 [3],
+        /// Its first vertex among the casters' positions, and its number of them.
+        position_first: uint,
+        vertex_count: uint,
+        /// Its first triangle among the casters' triangles, and its number of them.
+        triangle_first: uint,
+        triangle_count: uint,
+        /// [word] First component of its first position, and from one vertex to the next.
+        vertex_word_first: uint,
+        vertex_words: uint,
+        /// [index] Its first index.
+        index_first: uint,
+        /// [byte] 2 or 4; 0 = it has no indices.
+        index_bytes: uint,
+    }
+
+    /// What a host says about a view's shadow map.
+    struct Given {
+        /// [scene units] Distance of the nearest caster from the sub-light's plane, or less.
+        near: float,
+        /// [texel] As in `Fit`, where the host has the map already.
+        focal: vec2,
+        center: vec2,
+        /// Its depths: depth = depth_scale + depth_offset / z.
+        depth_scale: float,
+        depth_offset: float,
+        /// The depth where there is no caster.
+        depth_empty: float,
+        /// 1 = its columns run against the view's right.
+        mirrored: uint,
+    }
+
+    /// A view's projection for a host that draws its casters.
+    struct Projection {
+        /// Columns.
+        clip_from_world: vec4 [4],
+        /// To 256 bytes, to which any device can align uniform buffers.
+        reserved: vec4 [12],
     }
 }

@@ -26,43 +26,33 @@ pub struct SubLight {
     pub area: f64,
 }
 
-/// What of a cell of a light's grid lies in the light, in half sizes of the cell.
-#[derive(Clone)]
-struct Cell {
+/// A part of a light of some shape, wherever the light stands and whatever its size: what of a cell of its grid lies in
+/// it, in half sizes of the cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
     /// From the middle of the light to that of the cell.
     middle: DVec2,
     /// From the middle of the cell to the centre of what is left of it.
     shift: DVec2,
+    /// The cell's half sizes are the light's divided by this.
+    split: f64,
+    /// It has no extent.
+    point: bool,
     rim: Option<(DVec2, f64)>,
     sectors: Arc<[f32]>,
     area: f64,
 }
 
-/// The light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
+/// A light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
 /// A light without extent has one part without extent.
-pub fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {
-    if light.is_point() {
-        return vec![SubLight::point(light.center)];
+pub fn parts(light: &AreaLight, split: u32) -> Vec<Part> {
+    match light.shape {
+        _ if light.is_point() => vec![Part::point(DVec2::ZERO)],
+        LightShape::Rect { .. } => grid(split)
+            .map(|middle| Part::whole(middle, f64::from(split)))
+            .collect(),
+        LightShape::Disc { .. } => parts_of_disc(split).to_vec(),
     }
-    let (u, v, _) = light.frame();
-    let (half_u, half_v) = light.half_size();
-    let half_size = DVec2::new(half_u, half_v) / f64::from(split);
-    let cells = match light.shape {
-        LightShape::Rect { .. } => grid(split).map(Cell::whole).collect::<Arc<[_]>>(),
-        LightShape::Disc { .. } => cells_of_disc(split),
-    };
-    let part = |cell: &Cell| {
-        let at = (cell.middle + cell.shift) * half_size;
-        SubLight {
-            center: light.center + u * at.x + v * at.y,
-            half_size,
-            extent: (DVec2::NEG_ONE - cell.shift, DVec2::ONE - cell.shift),
-            rim: cell.rim,
-            sectors: cell.sectors.clone(),
-            area: cell.area,
-        }
-    };
-    cells.iter().map(part).collect()
 }
 
 /// The middles of the cells of a grid, in half sizes of a cell seen from the middle of all.
@@ -73,24 +63,63 @@ fn grid(split: u32) -> impl Iterator<Item = DVec2> {
     (0..split).flat_map(move |row| (0..split).map(move |column| middle(column, row)))
 }
 
-/// The cells of a disc, which are the same for all discs: found once for each split, as their tables take
+/// The parts of a disc, which are the same for all discs: found once for each split, as their tables take
 /// half a millisecond each.
-fn cells_of_disc(split: u32) -> Arc<[Cell]> {
-    static FOUND: Mutex<BTreeMap<u32, Arc<[Cell]>>> = Mutex::new(BTreeMap::new());
+fn parts_of_disc(split: u32) -> Arc<[Part]> {
+    static FOUND: Mutex<BTreeMap<u32, Arc<[Part]>>> = Mutex::new(BTreeMap::new());
     let mut found = FOUND.lock().unwrap_or_else(PoisonError::into_inner);
     let find = || {
         grid(split)
-            .filter_map(|middle| Cell::of_disc(middle, f64::from(split)))
+            .filter_map(|middle| Part::of_disc(middle, f64::from(split)))
             .collect()
     };
     found.entry(split).or_insert_with(find).clone()
 }
 
-impl Cell {
-    fn whole(middle: DVec2) -> Self {
+impl Part {
+    /// A point, `place` half sizes of the light from its centre.
+    pub fn point(place: DVec2) -> Self {
+        Self {
+            point: true,
+            ..Self::whole(place, 1.0)
+        }
+    }
+
+    /// The part of a light that stands somewhere. Takes no memory.
+    pub fn of(&self, light: &AreaLight) -> SubLight {
+        let (u, v, _) = light.frame();
+        let half_size = DVec2::from(light.half_size()) / self.split;
+        let at = (self.middle + self.shift) * half_size;
+        let center = light.center + u * at.x + v * at.y;
+        if self.point {
+            return SubLight::point(center);
+        }
+        SubLight {
+            center,
+            half_size,
+            extent: (DVec2::NEG_ONE - self.shift, DVec2::ONE - self.shift),
+            rim: self.rim,
+            sectors: self.sectors.clone(),
+            area: self.area,
+        }
+    }
+
+    /// [half sizes²] Area; its weight among the light's parts.
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// See [`SubLight::sectors`].
+    pub fn sectors(&self) -> &Arc<[f32]> {
+        &self.sectors
+    }
+
+    fn whole(middle: DVec2, split: f64) -> Self {
         Self {
             middle,
             shift: DVec2::ZERO,
+            split,
+            point: false,
             rim: None,
             sectors: Arc::default(),
             area: 4.0,
@@ -100,16 +129,16 @@ impl Cell {
     /// None: nothing of the cell lies in the disc.
     fn of_disc(middle: DVec2, radius: f64) -> Option<Self> {
         let (shift, rim) = cut_by_disc(middle, radius)?;
-        let mut cell = Self {
+        let mut part = Self {
             shift,
             rim,
-            ..Self::whole(middle)
+            ..Self::whole(middle, radius)
         };
         if rim.is_some() {
-            cell.sectors = cell.sweep().into();
-            cell.area = cell.sectors[SECTOR_STEPS as usize].into();
+            part.sectors = part.sweep().into();
+            part.area = part.sectors[SECTOR_STEPS as usize].into();
         }
-        (cell.area > 1e-6).then_some(cell)
+        (part.area > 1e-6).then_some(part)
     }
 }
 
@@ -140,7 +169,7 @@ fn cut_by_disc(cell: DVec2, radius: f64) -> Option<(DVec2, Option<(DVec2, f64)>)
 
 impl SubLight {
     /// A part without extent: a point in the middle of half sizes that can be divided by.
-    pub fn point(center: DVec3) -> Self {
+    fn point(center: DVec3) -> Self {
         Self {
             center,
             half_size: DVec2::ONE,
@@ -152,7 +181,7 @@ impl SubLight {
     }
 }
 
-impl Cell {
+impl Part {
     /// See [`SubLight::sectors`].
     fn sweep(&self) -> Vec<f32> {
         const SUBSTEPS: u32 = 8;
@@ -220,6 +249,11 @@ fn direction(parameter: f64) -> DVec2 {
 mod tests {
     use super::*;
     use glam::Vec3;
+
+    fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {
+        let parts = parts(light, split);
+        parts.iter().map(|part| part.of(light)).collect()
+    }
 
     fn disc(radius: f64) -> AreaLight {
         AreaLight {

@@ -14,7 +14,7 @@ mod reference_maps;
 
 use crate::scene::AreaLight;
 use crate::shot::{Settings, Technique};
-use crate::sub_light::{SubLight, sub_lights};
+use crate::sub_light::{self, Part};
 
 /// One dispatch in every view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,10 +111,10 @@ impl Recipe {
 }
 
 /// The parts of a light that have views of their own.
-pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<SubLight> {
+pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
     match settings.technique {
         Technique::ReferenceMaps if !light.is_point() => reference_maps::parts(light, settings),
-        _ => sub_lights(light, settings.split),
+        _ => sub_light::parts(light, settings.split),
     }
 }
 

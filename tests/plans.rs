@@ -17,6 +17,7 @@ const LIMITS: Limits = Limits {
     buffer_bytes: 1 << 27,
     memory_bytes: 1 << 33,
     allowed_bytes: u64::MAX,
+    storage_alignment: 16,
     loop_turns: 60000,
 };
 

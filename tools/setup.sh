@@ -8,6 +8,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # that make up a shader compiler.
 packages=(g++ binutils libvulkan1 mesa-vulkan-drivers vulkan-validationlayers
           libshaderc-dev glslang-dev spirv-tools)
+# What the tests of the C library take: Vulkan's headers, what finds installed libraries, numpy for the script.
+test_packages=(libvulkan-dev pkg-config cmake make python3-numpy)
+# What only `tools/test.sh --slow` takes.
+slow_packages=(valgrind)
 # What building the shader compiler from source takes, where the archives are of no use.
 source_packages=(cmake ninja-build git python3)
 

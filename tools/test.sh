@@ -46,6 +46,10 @@ export GALLIVM_PERF=nopt
 
 # A browser for the test of the study's page.
 install_packages chromium chromium-driver fonts-dejavu-core
+install_packages "${test_packages[@]}"
+if [ "$mode" = slow ]; then
+    install_packages "${slow_packages[@]}"
+fi
 
 step() {
     echo "test: $*"
@@ -59,7 +63,7 @@ step() {
 
 # The tests that have a longer version, at full length.
 slow_tests() {
-    HALFSHADE_SLOW=1 cargo test --bin halfshade --test mutants --test faults --test cycles
+    HALFSHADE_SLOW=1 cargo test --bin halfshade --test mutants --test faults --test cycles --test c_api
 }
 
 # The tests whose results a driver could change.
@@ -89,6 +93,7 @@ case $mode in
         step cargo fmt --check
         step cargo clippy --all-targets -- -D warnings
         step cargo check --lib --no-default-features
+        step cargo check --lib --no-default-features --features capi
         step cargo test
         ;;
     slow) step slow_tests ;;

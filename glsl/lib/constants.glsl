@@ -23,3 +23,5 @@ layout(constant_id = 19) const uint BLOCKER_SAMPLES = 1u; // of the blocker sear
 layout(constant_id = 20) const uint FILTER_SAMPLES = 1u;  // of the percentage-closer filter
 layout(constant_id = 21) const int FILTER_REACH = 0;      // [texel] of the hard test's percentage-closer filter
 layout(constant_id = 22) const bool MASKED = false;       // the casters drawn have holes
+layout(constant_id = 23) const bool GIVEN = false;        // a host has the shadow maps already
+layout(constant_id = 24) const bool POSITIONS = false;    // a host's surface is positions rather than depths

@@ -5,12 +5,14 @@ use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
+use ash::vk::Handle;
 use ash::{ext, vk};
-use gpu_allocator::AllocationSizes;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::vulkan::Allocator;
 
-use super::physical::{DeviceInfo, pick};
-use super::requirements::{self, Features, Limits};
+use super::create::{create_allocator, create_cache, create_device, tick_ns};
+use super::host::HostDevice;
+use super::physical::{DeviceInfo, describe, pick};
+use super::requirements::{self, Limits};
 use super::validation::{self, Messages};
 use crate::error::{Error, Result};
 
@@ -19,7 +21,7 @@ const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 /// How to open a device.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// A part of the device's name, in any case. None: discrete before integrated before CPU.
+    /// A part of the device's name, in any case, or its whole UUID in hexadecimal digits. None: discrete before integrated before CPU.
     pub device: Option<String>,
     /// Run under the Khronos validation layer with synchronization validation.
     pub validate: bool,
@@ -34,12 +36,15 @@ pub struct Options {
 
 /// An open device. Everything that lives on it keeps it open.
 pub struct Gpu {
-    _entry: ash::Entry,
+    /// None: the device is a host's, as is all that it was made of.
+    entry: Option<ash::Entry>,
     instance: ash::Instance,
+    physical: vk::PhysicalDevice,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Messages,
     pub(super) device: ash::Device,
     pub(super) debug: Option<ext::debug_utils::Device>,
+    /// Null: the device is a host's, who alone submits to it.
     pub(super) queue: vk::Queue,
     /// Queue submissions need external synchronization.
     pub(super) submission: Mutex<()>,
@@ -49,9 +54,18 @@ pub struct Gpu {
     cache_file: Option<PathBuf>,
     /// [ns] Length of a timestamp tick; 0 = the queue has no timestamps.
     pub(super) tick_ns: f64,
+    callbacks: Option<Callbacks>,
     pub limits: Limits,
     pub info: DeviceInfo,
 }
+
+/// A host's functions for memory on the host.
+struct Callbacks(vk::AllocationCallbacks<'static>);
+
+// SAFETY: the host promises functions that any thread may call.
+unsafe impl Send for Callbacks {}
+// SAFETY: as above.
+unsafe impl Sync for Callbacks {}
 
 /// Names a failed call.
 pub(super) fn failed(call: &str) -> impl FnOnce(vk::Result) -> Error + '_ {
@@ -191,10 +205,11 @@ impl Gpu {
             .cache_folder
             .as_ref()
             .map(|folder| folder.join(format!("pipelines-{}.bin", info.uuid)));
-        let cache = create_cache(&device, cache_file.as_deref());
+        let cache = create_cache(&device, cache_file.as_deref(), None);
         Ok(Arc::new(Self {
-            _entry: entry,
+            entry: Some(entry),
             instance: guard.release(),
+            physical,
             messenger,
             messages,
             device,
@@ -206,9 +221,74 @@ impl Gpu {
             cache,
             cache_file,
             tick_ns,
+            callbacks: None,
             limits,
             info,
         }))
+    }
+
+    /// A device that belongs to a host, and stays the host's: nothing is submitted to it or waited for.
+    ///
+    /// # Errors
+    /// It lacks something that is required, the host has not enabled it, or a call failed.
+    ///
+    /// # Safety
+    /// The handles are alive, belong together, and outlive the result and all that lives on it; what is said to be
+    /// enabled is.
+    pub unsafe fn adopt(host: HostDevice) -> Result<Arc<Self>> {
+        // SAFETY: the caller's promise.
+        let instance =
+            unsafe { requirements::load_instance(host.get_instance_proc_addr, host.instance) }?;
+        requirements::check_host(&instance, &host)?;
+        // SAFETY: the caller's promise.
+        let device = unsafe { ash::Device::load(instance.fp_v1_0(), host.device) };
+        let debug = (host.debug_utils).then(|| ext::debug_utils::Device::new(&instance, &device));
+        let callbacks = host.callbacks.map(Callbacks);
+        let allocator = create_allocator(&instance, host.physical, &device)?;
+        let cache = create_cache(
+            &device,
+            None,
+            callbacks.as_ref().map(|callbacks| &callbacks.0),
+        );
+        Ok(Arc::new(Self {
+            entry: None,
+            physical: host.physical,
+            messenger: None,
+            messages: Messages::default(),
+            debug,
+            queue: vk::Queue::null(),
+            submission: Mutex::new(()),
+            family: host.family,
+            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            cache,
+            cache_file: None,
+            tick_ns: 0.0,
+            callbacks,
+            limits: requirements::limits(&instance, host.physical),
+            info: describe(&instance, host.physical),
+            instance,
+            device,
+        }))
+    }
+
+    /// Whether work can be submitted; otherwise the device is a host's.
+    pub fn has_queue(&self) -> bool {
+        !self.queue.is_null()
+    }
+
+    /// A host's functions for memory on the host. (Device memory is the allocator's business, which takes none.)
+    pub(super) fn callbacks(&self) -> Option<&vk::AllocationCallbacks<'static>> {
+        self.callbacks.as_ref().map(|callbacks| &callbacks.0)
+    }
+
+    /// What a format can be used for, optimally tiled.
+    pub(super) fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        // SAFETY: a plain query on a device of this instance.
+        unsafe {
+            self.instance
+                .get_physical_device_format_properties(self.physical, format)
+        }
+        .optimal_tiling_features
     }
 
     /// The raw device, for those who record commands of their own.
@@ -242,8 +322,11 @@ impl Gpu {
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
-    /// Waits until the queue is idle; errors only if the device is lost.
+    /// Waits until the queue is idle; errors only if the device is lost. A host waits for its own.
     pub fn wait(&self) -> Result<()> {
+        if !self.has_queue() {
+            return Ok(());
+        }
         let _one_at_a_time = self.submission.lock();
         // SAFETY: the queue is externally synchronized by the lock.
         unsafe { self.device.queue_wait_idle(self.queue) }.map_err(failed("vkQueueWaitIdle"))
@@ -272,10 +355,16 @@ impl Drop for Gpu {
         // SAFETY: everything that lives on the device keeps an Arc of it, so nothing is left; each
         // object is destroyed once, children before parents.
         unsafe {
-            let _ = self.device.device_wait_idle();
+            if self.entry.is_some() {
+                let _ = self.device.device_wait_idle();
+            }
             self.store_cache();
-            self.device.destroy_pipeline_cache(self.cache, None);
+            self.device
+                .destroy_pipeline_cache(self.cache, self.callbacks());
             ManuallyDrop::drop(&mut self.allocator);
+            if self.entry.is_none() {
+                return;
+            }
             self.device.destroy_device(None);
             if let Some((debug, messenger)) = &self.messenger {
                 debug.destroy_debug_utils_messenger(*messenger, None);
@@ -300,77 +389,5 @@ impl Drop for InstanceGuard {
             // SAFETY: nothing was created on it, or it was destroyed before.
             unsafe { instance.destroy_instance(None) };
         }
-    }
-}
-
-fn create_device(
-    instance: &ash::Instance,
-    physical: vk::PhysicalDevice,
-    family: u32,
-) -> Result<ash::Device> {
-    let mut features = Features::required();
-    let queues = [vk::DeviceQueueCreateInfo::default()
-        .queue_family_index(family)
-        .queue_priorities(&[1.0])];
-    let info = vk::DeviceCreateInfo::default()
-        .queue_create_infos(&queues)
-        .enabled_features(&features.core)
-        .push_next(&mut features.v12)
-        .push_next(&mut features.v13);
-    // SAFETY: all that `info` points to outlives the call; the features were found to be there.
-    unsafe { instance.create_device(physical, &info, None) }.map_err(failed("vkCreateDevice"))
-}
-
-fn create_allocator(
-    instance: &ash::Instance,
-    physical: vk::PhysicalDevice,
-    device: &ash::Device,
-) -> Result<Allocator> {
-    Allocator::new(&AllocatorCreateDesc {
-        instance: instance.clone(),
-        device: device.clone(),
-        physical_device: physical,
-        debug_settings: Default::default(),
-        buffer_device_address: false,
-        // A large resource has a block of its own; what small ones share shall not count against a budget.
-        allocation_sizes: AllocationSizes::new(16 << 20, 8 << 20),
-    })
-    .map_err(|error| Error::Memory {
-        resource: "the allocator".into(),
-        message: error.to_string(),
-    })
-}
-
-/// The stored pipeline cache, or an empty one; a null handle where even that fails: it is optional.
-fn create_cache(device: &ash::Device, file: Option<&std::path::Path>) -> vk::PipelineCache {
-    let stored = file
-        .and_then(|file| std::fs::read(file).ok())
-        .unwrap_or_default();
-    // SAFETY: the driver checks the header of the data and ignores what is not its own.
-    unsafe {
-        device
-            .create_pipeline_cache(
-                &vk::PipelineCacheCreateInfo::default().initial_data(&stored),
-                None,
-            )
-            .or_else(|_| {
-                device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None)
-            })
-            .unwrap_or_default()
-    }
-}
-
-fn tick_ns(instance: &ash::Instance, physical: vk::PhysicalDevice, family: u32) -> f64 {
-    // SAFETY: plain queries on a device of this instance.
-    let (properties, families) = unsafe {
-        (
-            instance.get_physical_device_properties(physical),
-            instance.get_physical_device_queue_family_properties(physical),
-        )
-    };
-    if families[family as usize].timestamp_valid_bits == 0 {
-        0.0
-    } else {
-        properties.limits.timestamp_period.into()
     }
 }

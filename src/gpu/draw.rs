@@ -2,8 +2,8 @@
 
 use ash::vk;
 
-use super::memory::{Buffer, Image};
-use super::pass::Pass;
+use super::memory::Buffer;
+use super::pass::Bound;
 use crate::shared::Push;
 
 /// What to draw.
@@ -17,12 +17,33 @@ pub enum Draw<'a> {
     },
 }
 
-/// What is drawn to. Colours are cleared to zero and depth to 0, the far end.
+/// An image that can be drawn to.
+#[derive(Clone, Copy)]
+pub struct Target {
+    pub(super) view: vk::ImageView,
+    pub(super) layout: vk::ImageLayout,
+    /// [texel] Width and height.
+    pub size: (u32, u32),
+}
+
+/// What is drawn to, all of the same size. Colours are cleared to zero and depth to 0, the far end.
 pub struct Attachments<'a> {
-    pub colors: &'a [&'a Image],
-    pub depth: &'a Image,
+    /// At most [`MAX_COLORS`].
+    pub colors: &'a [Target],
+    pub depth: Option<Target>,
     /// [texel] Frame round the image that nothing is drawn to.
     pub margin: u32,
+}
+
+/// Most colours that are drawn to at a time.
+const MAX_COLORS: usize = 4;
+
+fn attach(target: Target) -> vk::RenderingAttachmentInfo<'static> {
+    vk::RenderingAttachmentInfo::default()
+        .image_view(target.view)
+        .image_layout(target.layout)
+        .load_op(vk::AttachmentLoadOp::CLEAR)
+        .store_op(vk::AttachmentStoreOp::STORE)
 }
 
 pub(super) fn begin_rendering(
@@ -30,20 +51,13 @@ pub(super) fn begin_rendering(
     commands: vk::CommandBuffer,
     attachments: &Attachments,
 ) {
-    let attach = |image: &Image| {
-        vk::RenderingAttachmentInfo::default()
-            .image_view(image.view)
-            .image_layout(vk::ImageLayout::GENERAL)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE)
-    };
-    let colors: Vec<_> = attachments
-        .colors
-        .iter()
-        .map(|image| attach(image))
-        .collect();
-    let depth = attach(attachments.depth);
-    let (width, height) = (attachments.depth.width, attachments.depth.height);
+    let mut colors = [vk::RenderingAttachmentInfo::default(); MAX_COLORS];
+    for (info, color) in colors.iter_mut().zip(attachments.colors) {
+        *info = attach(*color);
+    }
+    let depth = attachments.depth.map(attach);
+    let sizes = attachments.depth.iter().chain(attachments.colors);
+    let (width, height) = sizes.map(|target| target.size).next().unwrap_or_default();
     let margin = attachments.margin;
     let whole = vk::Rect2D {
         offset: vk::Offset2D::default(),
@@ -67,11 +81,13 @@ pub(super) fn begin_rendering(
         min_depth: 0.0,
         max_depth: 1.0,
     };
-    let info = vk::RenderingInfo::default()
+    let mut info = vk::RenderingInfo::default()
         .render_area(whole)
         .layer_count(1)
-        .color_attachments(&colors)
-        .depth_attachment(&depth);
+        .color_attachments(&colors[..attachments.colors.len().min(MAX_COLORS)]);
+    if let Some(depth) = &depth {
+        info = info.depth_attachment(depth);
+    }
     // SAFETY: recording; the attachments are alive.
     unsafe {
         device.cmd_begin_rendering(commands, &info);
@@ -83,32 +99,28 @@ pub(super) fn begin_rendering(
 pub(super) fn record_draw(
     device: &ash::Device,
     commands: vk::CommandBuffer,
-    pass: &Pass,
+    bound: Bound,
     push: Push,
-    draw: &Draw,
+    draw: Draw,
 ) {
     let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
-    // SAFETY: recording inside rendering; the pass and the buffers are alive until submission ends.
+    bound.record(
+        device,
+        commands,
+        vk::PipelineBindPoint::GRAPHICS,
+        stages,
+        push,
+    );
+    // SAFETY: recording inside rendering; the buffers are alive until submission ends.
     unsafe {
-        device.cmd_bind_pipeline(commands, vk::PipelineBindPoint::GRAPHICS, pass.pipeline);
-        let sets = [pass.set];
-        device.cmd_bind_descriptor_sets(
-            commands,
-            vk::PipelineBindPoint::GRAPHICS,
-            pass.layout,
-            0,
-            &sets,
-            &[],
-        );
-        device.cmd_push_constants(commands, pass.layout, stages, 0, bytemuck::bytes_of(&push));
         match draw {
-            Draw::Vertices(count) => device.cmd_draw(commands, *count, 1, 0, 0),
+            Draw::Vertices(count) => device.cmd_draw(commands, count, 1, 0, 0),
             Draw::Indexed {
                 indices,
                 command: (buffer, offset),
             } => {
                 device.cmd_bind_index_buffer(commands, indices.raw, 0, vk::IndexType::UINT32);
-                device.cmd_draw_indexed_indirect(commands, buffer.raw, *offset, 1, 0);
+                device.cmd_draw_indexed_indirect(commands, buffer.raw, offset, 1, 0);
             }
         }
     }

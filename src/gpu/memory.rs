@@ -1,6 +1,5 @@
-//! Buffers and images. Each frees itself and is known by name.
+//! Buffers and images. Each frees itself.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use ash::vk;
@@ -8,6 +7,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use gpu_allocator::{AllocationError, MemoryLocation};
 
 use super::device::{Gpu, failed};
+use super::draw::Target;
 use super::recorder::Recorder;
 use crate::error::{Error, Result};
 
@@ -26,7 +26,7 @@ pub struct Buffer {
 pub enum ImageKind {
     /// D32_SFLOAT, drawn to and sampled.
     Depth,
-    /// RGBA32F, drawn to and sampled.
+    /// RGBA32F, drawn to or written by compute passes, and sampled.
     Vector,
     /// RGBA8, drawn to and sampled.
     Color,
@@ -66,7 +66,8 @@ impl ImageKind {
     fn usage(self) -> vk::ImageUsageFlags {
         let own = match self {
             Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-            Self::Vector | Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+            Self::Vector => vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE,
+            Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             Self::Layers => vk::ImageUsageFlags::empty(),
             Self::Bounds | Self::Bounds16 => vk::ImageUsageFlags::STORAGE,
         };
@@ -110,11 +111,23 @@ impl Buffer {
         Self::at(gpu, name, bytes, MemoryLocation::GpuToCpu)
     }
 
-    /// A buffer on the device that holds `data`. Waits for the copy.
+    /// A buffer that holds `data`: on the device, for which it waits, or, where only a host can submit the copy,
+    /// in memory that both see.
     pub fn with_data<T: bytemuck::Pod>(gpu: &Arc<Gpu>, name: &str, data: &[T]) -> Result<Self> {
-        let buffer = Self::new(gpu, name, size_of_val(data) as u64)?;
-        buffer.upload(data)?;
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        if gpu.has_queue() {
+            let buffer = Self::new(gpu, name, bytes.len() as u64)?;
+            buffer.upload(data)?;
+            return Ok(buffer);
+        }
+        let mut buffer = Self::at(gpu, name, bytes.len() as u64, MemoryLocation::CpuToGpu)?;
+        buffer.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
         Ok(buffer)
+    }
+
+    /// The raw buffer, for hosts that bind it themselves.
+    pub fn raw(&self) -> vk::Buffer {
+        self.raw
     }
 
     /// Replaces what a buffer on the device holds by `data` of the same size. Waits for the copy; nothing
@@ -130,7 +143,7 @@ impl Buffer {
         staging.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
         let mut recorder = Recorder::new(&self.gpu, 0)?;
         recorder.begin()?;
-        recorder.copy_buffer("upload", &staging, self);
+        recorder.commands().copy_buffer("upload", &staging, self);
         recorder.submit_and_wait()?;
         Ok(())
     }
@@ -142,6 +155,7 @@ impl Buffer {
             vk::BufferUsageFlags::STORAGE_BUFFER
                 | vk::BufferUsageFlags::INDIRECT_BUFFER
                 | vk::BufferUsageFlags::INDEX_BUFFER
+                | vk::BufferUsageFlags::UNIFORM_BUFFER
                 | vk::BufferUsageFlags::TRANSFER_SRC
                 | vk::BufferUsageFlags::TRANSFER_DST,
         );
@@ -150,7 +164,7 @@ impl Buffer {
         unsafe {
             let raw = gpu
                 .device
-                .create_buffer(&info, None)
+                .create_buffer(&info, gpu.callbacks())
                 .map_err(failed(&format!("vkCreateBuffer of {name}")))?;
             gpu.name(raw, name);
             let mut buffer = Self {
@@ -201,7 +215,11 @@ impl Buffer {
 impl Drop for Buffer {
     fn drop(&mut self) {
         // SAFETY: destroyed once; whoever submitted work with it has waited for it.
-        unsafe { self.gpu.device.destroy_buffer(self.raw, None) };
+        unsafe {
+            self.gpu
+                .device
+                .destroy_buffer(self.raw, self.gpu.callbacks())
+        };
         release(&self.gpu, self.allocation.take());
     }
 }
@@ -233,7 +251,7 @@ impl Image {
         unsafe {
             let raw = gpu
                 .device
-                .create_image(&info, None)
+                .create_image(&info, gpu.callbacks())
                 .map_err(failed(&format!("vkCreateImage of {name}")))?;
             gpu.name(raw, name);
             let mut image = Self {
@@ -271,8 +289,12 @@ impl Image {
             .format(self.kind.format())
             .subresource_range(self.range());
         // SAFETY: the image is alive and bound.
-        unsafe { self.gpu.device.create_image_view(&info, None) }
-            .map_err(failed(&format!("vkCreateImageView of {}", self.name)))
+        unsafe {
+            self.gpu
+                .device
+                .create_image_view(&info, self.gpu.callbacks())
+        }
+        .map_err(failed(&format!("vkCreateImageView of {}", self.name)))
     }
 
     pub(super) fn range(&self) -> vk::ImageSubresourceRange {
@@ -280,6 +302,15 @@ impl Image {
             .aspect_mask(self.kind.aspect())
             .level_count(1)
             .layer_count(self.layers)
+    }
+
+    /// As something to draw to.
+    pub fn target(&self) -> Target {
+        Target {
+            view: self.view,
+            layout: vk::ImageLayout::GENERAL,
+            size: (self.width, self.height),
+        }
     }
 
     /// [byte] Of its texels.
@@ -295,8 +326,9 @@ impl Drop for Image {
     fn drop(&mut self) {
         // SAFETY: destroyed once; whoever submitted work with it has waited for it.
         unsafe {
-            self.gpu.device.destroy_image_view(self.view, None);
-            self.gpu.device.destroy_image(self.raw, None);
+            let callbacks = self.gpu.callbacks();
+            self.gpu.device.destroy_image_view(self.view, callbacks);
+            self.gpu.device.destroy_image(self.raw, callbacks);
         }
         release(&self.gpu, self.allocation.take());
     }
@@ -342,63 +374,5 @@ fn release(gpu: &Gpu, allocation: Option<Allocation>) {
     if let (Some(allocation), Ok(mut allocator)) = (allocation, gpu.allocator.lock()) {
         // An allocation that can't be freed is one that the allocator does not know: nothing to free.
         let _ = allocator.free(allocation);
-    }
-}
-
-/// A buffer or an image.
-pub enum Resource {
-    Buffer(Buffer),
-    Image(Image),
-}
-
-/// Everything that passes can bind, under the name that the shaders know it by.
-#[derive(Default)]
-pub struct Resources(BTreeMap<&'static str, Resource>);
-
-impl Resources {
-    pub fn add_buffer(&mut self, name: &'static str, buffer: Buffer) {
-        self.0.insert(name, Resource::Buffer(buffer));
-    }
-
-    pub fn add_image(&mut self, name: &'static str, image: Image) {
-        self.0.insert(name, Resource::Image(image));
-    }
-
-    pub fn get(&self, name: &str) -> Option<&Resource> {
-        self.0.get(name)
-    }
-
-    /// The named buffer. Errors: there is none.
-    pub fn buffer(&self, name: &str) -> Result<&Buffer> {
-        match self.get(name) {
-            Some(Resource::Buffer(buffer)) => Ok(buffer),
-            _ => Err(Error::Unsupported(format!("there is no buffer {name}"))),
-        }
-    }
-
-    /// The named image. Errors: there is none.
-    pub fn image(&self, name: &str) -> Result<&Image> {
-        match self.get(name) {
-            Some(Resource::Image(image)) => Ok(image),
-            _ => Err(Error::Unsupported(format!("there is no image {name}"))),
-        }
-    }
-
-    pub fn images(&self) -> impl Iterator<Item = &Image> {
-        self.0.values().filter_map(|resource| match resource {
-            Resource::Image(image) => Some(image),
-            Resource::Buffer(_) => None,
-        })
-    }
-
-    /// [byte] Name and size of each, in the order of names.
-    pub fn sizes(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        self.0.iter().map(|(name, resource)| {
-            let bytes = match resource {
-                Resource::Buffer(buffer) => buffer.bytes,
-                Resource::Image(image) => image.bytes(),
-            };
-            (*name, bytes)
-        })
     }
 }

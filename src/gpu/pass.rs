@@ -6,36 +6,73 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::device::{Gpu, failed};
-use super::memory::{ImageKind, Resource, Resources};
+use super::host::HostImage;
+use super::pipeline::{
+    GraphicsState, Specialization, create_compute_pipeline, create_graphics_pipeline,
+};
+use super::resources::{Resource, Resources};
 use super::shader::{Binding, BindingKind, Shader};
 use crate::error::{Error, Result};
-
-/// Values of specialization constants: (constant id, value).
-pub type Specialization = Vec<(u32, u32)>;
+use crate::shared::Push;
 
 /// A pipeline with everything bound: ready to be recorded any number of times.
 pub(super) struct Pass {
     gpu: Arc<Gpu>,
     pub(super) pipeline: vk::Pipeline,
     pub(super) layout: vk::PipelineLayout,
-    pub(super) set: vk::DescriptorSet,
+    /// One for each list of resources that it was made with.
+    sets: Vec<vk::DescriptorSet>,
     set_layout: vk::DescriptorSetLayout,
     pool: vk::DescriptorPool,
 }
 
 /// A compute shader with its resources.
-pub struct ComputePass(pub(super) Pass);
+pub struct ComputePass(Pass);
 
 /// A pair of vertex and fragment shader with their resources.
-pub struct GraphicsPass(pub(super) Pass);
+pub struct GraphicsPass(Pass);
 
-/// The fixed part of a graphics pipeline. Triangles are filled and not culled; depth is reverse-Z.
-pub struct GraphicsState<'a> {
-    pub vertex: &'a str,
-    /// None: only depth is written.
-    pub fragment: Option<&'a str>,
-    pub colors: &'a [ImageKind],
+/// A pass with one of the lists of resources that it was made with.
+#[derive(Clone, Copy)]
+pub struct Bound<'a> {
+    pass: &'a Pass,
+    set: vk::DescriptorSet,
 }
+
+impl Bound<'_> {
+    /// Binds pipeline and resources, and pushes.
+    pub(super) fn record(
+        &self,
+        device: &ash::Device,
+        commands: vk::CommandBuffer,
+        point: vk::PipelineBindPoint,
+        stages: vk::ShaderStageFlags,
+        push: Push,
+    ) {
+        let layout = self.pass.layout;
+        // SAFETY: recording; the pass and what it binds are alive until submission ends.
+        unsafe {
+            device.cmd_bind_pipeline(commands, point, self.pass.pipeline);
+            device.cmd_bind_descriptor_sets(commands, point, layout, 0, &[self.set], &[]);
+            device.cmd_push_constants(commands, layout, stages, 0, bytemuck::bytes_of(&push));
+        }
+    }
+}
+
+impl<'a> From<&'a ComputePass> for Bound<'a> {
+    fn from(pass: &'a ComputePass) -> Self {
+        pass.with(0)
+    }
+}
+
+impl<'a> From<&'a GraphicsPass> for Bound<'a> {
+    fn from(pass: &'a GraphicsPass) -> Self {
+        pass.with(0)
+    }
+}
+
+/// Where a pass finds its resources: in the first of these that has the name.
+pub type Sources<'a> = [&'a Resources];
 
 impl ComputePass {
     /// `name` is the debug name. Errors: a resource that the shader names is missing or of another
@@ -47,31 +84,31 @@ impl ComputePass {
         specialization: &Specialization,
         resources: &Resources,
     ) -> Result<Self> {
+        Self::with_each(gpu, name, shader, specialization, &[&[resources]])
+    }
+
+    /// A pass that can be recorded with each of several lists of resources.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn with_each(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        shader: &str,
+        specialization: &Specialization,
+        lists: &[&Sources],
+    ) -> Result<Self> {
         let shader = Shader::find(shader)?;
-        let mut pass = Pass::bind(
-            gpu,
-            name,
-            &[shader],
-            resources,
-            vk::ShaderStageFlags::COMPUTE,
-        )?;
-        let module = Module::new(gpu, shader)?;
-        let constants = Constants::new(specialization);
-        let constants = constants.info();
-        let stage = module.stage(vk::ShaderStageFlags::COMPUTE, &constants);
-        let info = vk::ComputePipelineCreateInfo::default()
-            .stage(stage)
-            .layout(pass.layout);
-        // SAFETY: all that `info` points to outlives the call.
-        let created = unsafe {
-            gpu.device
-                .create_compute_pipelines(gpu.cache, &[info], None)
-        };
-        pass.pipeline = created.map_err(|(_, result)| {
-            failed(&format!("vkCreateComputePipelines of {name}"))(result)
-        })?[0];
+        let stages = vk::ShaderStageFlags::COMPUTE;
+        let mut pass = Pass::bind(gpu, name, &[shader], lists, stages)?;
+        pass.pipeline = create_compute_pipeline(gpu, name, shader, specialization, pass.layout)?;
         gpu.name(pass.pipeline, name);
         Ok(Self(pass))
+    }
+
+    /// With the list of resources of that number, or the first.
+    pub fn with(&self, list: usize) -> Bound<'_> {
+        self.0.with(list)
     }
 }
 
@@ -84,11 +121,22 @@ impl GraphicsPass {
         specialization: &Specialization,
         resources: &Resources,
     ) -> Result<Self> {
+        Self::with_each(gpu, name, state, specialization, &[&[resources]])
+    }
+
+    /// As `ComputePass::with_each`.
+    pub fn with_each(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        state: &GraphicsState,
+        specialization: &Specialization,
+        lists: &[&Sources],
+    ) -> Result<Self> {
         let vertex = Shader::find(state.vertex)?;
         let fragment = state.fragment.map(Shader::find).transpose()?;
         let shaders: Vec<&Shader> = [Some(vertex), fragment].into_iter().flatten().collect();
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
-        let mut pass = Pass::bind(gpu, name, &shaders, resources, stages)?;
+        let mut pass = Pass::bind(gpu, name, &shaders, lists, stages)?;
         pass.pipeline = create_graphics_pipeline(
             gpu,
             name,
@@ -101,85 +149,27 @@ impl GraphicsPass {
         gpu.name(pass.pipeline, name);
         Ok(Self(pass))
     }
-}
 
-fn create_graphics_pipeline(
-    gpu: &Gpu,
-    name: &str,
-    state: &GraphicsState,
-    vertex: &Shader,
-    fragment: Option<&Shader>,
-    specialization: &Specialization,
-    layout: vk::PipelineLayout,
-) -> Result<vk::Pipeline> {
-    let constants = Constants::new(specialization);
-    let constants = constants.info();
-    let vertex = Module::new(gpu, vertex)?;
-    let fragment = fragment
-        .map(|shader| Module::new(gpu, shader))
-        .transpose()?;
-    let mut stages = vec![vertex.stage(vk::ShaderStageFlags::VERTEX, &constants)];
-    stages.extend(
-        fragment
-            .as_ref()
-            .map(|module| module.stage(vk::ShaderStageFlags::FRAGMENT, &constants)),
-    );
-    let formats: Vec<vk::Format> = state.colors.iter().map(|kind| kind.format()).collect();
-    let mut rendering = vk::PipelineRenderingCreateInfo::default()
-        .color_attachment_formats(&formats)
-        .depth_attachment_format(ImageKind::Depth.format());
-    let input = vk::PipelineVertexInputStateCreateInfo::default();
-    let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-        .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
-    let viewport = vk::PipelineViewportStateCreateInfo::default()
-        .viewport_count(1)
-        .scissor_count(1);
-    let raster = vk::PipelineRasterizationStateCreateInfo::default()
-        .polygon_mode(vk::PolygonMode::FILL)
-        .cull_mode(vk::CullModeFlags::NONE)
-        .line_width(1.0);
-    let samples = vk::PipelineMultisampleStateCreateInfo::default()
-        .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-    let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-        .depth_test_enable(true)
-        .depth_write_enable(true)
-        .depth_compare_op(vk::CompareOp::GREATER);
-    let attachments = vec![
-        vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA);
-        formats.len()
-    ];
-    let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
-    let dynamic = vk::PipelineDynamicStateCreateInfo::default()
-        .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-    let info = vk::GraphicsPipelineCreateInfo::default()
-        .stages(&stages)
-        .vertex_input_state(&input)
-        .input_assembly_state(&assembly)
-        .viewport_state(&viewport)
-        .rasterization_state(&raster)
-        .multisample_state(&samples)
-        .depth_stencil_state(&depth)
-        .color_blend_state(&blend)
-        .dynamic_state(&dynamic)
-        .layout(layout)
-        .push_next(&mut rendering);
-    // SAFETY: all that `info` points to outlives the call.
-    let created = unsafe {
-        gpu.device
-            .create_graphics_pipelines(gpu.cache, &[info], None)
-    };
-    Ok(created
-        .map_err(|(_, result)| failed(&format!("vkCreateGraphicsPipelines of {name}"))(result))?[0])
+    /// With the list of resources of that number, or the first.
+    pub fn with(&self, list: usize) -> Bound<'_> {
+        self.0.with(list)
+    }
 }
 
 impl Pass {
-    /// Layouts and a descriptor set for the resources that the shaders name.
+    fn with(&self, list: usize) -> Bound<'_> {
+        Bound {
+            pass: self,
+            set: *self.sets.get(list).unwrap_or(&self.sets[0]),
+        }
+    }
+
+    /// Layouts, and a descriptor set for each list of the resources that the shaders name.
     fn bind(
         gpu: &Arc<Gpu>,
         name: &str,
         shaders: &[&Shader],
-        resources: &Resources,
+        lists: &[&Sources],
         stages: vk::ShaderStageFlags,
     ) -> Result<Self> {
         // Shaders of one pass share a number where they share a name.
@@ -192,14 +182,16 @@ impl Pass {
             gpu: gpu.clone(),
             pipeline: vk::Pipeline::null(),
             layout: vk::PipelineLayout::null(),
-            set: vk::DescriptorSet::null(),
+            sets: Vec::new(),
             set_layout: vk::DescriptorSetLayout::null(),
             pool: vk::DescriptorPool::null(),
         };
         pass.create_layouts(name, &bindings, stages)?;
-        pass.create_set(name, &bindings)?;
-        for binding in bindings.values() {
-            pass.write(name, binding, resources)?;
+        pass.create_sets(name, &bindings, lists.len())?;
+        for (set, sources) in pass.sets.iter().zip(lists) {
+            for binding in bindings.values() {
+                pass.write(name, *set, binding, sources)?;
+            }
         }
         Ok(pass)
     }
@@ -226,80 +218,106 @@ impl Pass {
             self.set_layout = device
                 .create_descriptor_set_layout(
                     &vk::DescriptorSetLayoutCreateInfo::default().bindings(&entries),
-                    None,
+                    self.gpu.callbacks(),
                 )
                 .map_err(failed(&format!("vkCreateDescriptorSetLayout of {name}")))?;
             let push = [vk::PushConstantRange::default()
                 .stage_flags(stages)
-                .size(size_of::<crate::shared::Push>() as u32)];
+                .size(size_of::<Push>() as u32)];
             self.layout = device
                 .create_pipeline_layout(
                     &vk::PipelineLayoutCreateInfo::default()
                         .set_layouts(&[self.set_layout])
                         .push_constant_ranges(&push),
-                    None,
+                    self.gpu.callbacks(),
                 )
                 .map_err(failed(&format!("vkCreatePipelineLayout of {name}")))?;
         }
         Ok(())
     }
 
-    fn create_set(&mut self, name: &str, bindings: &BTreeMap<u32, Binding>) -> Result<()> {
+    fn create_sets(
+        &mut self,
+        name: &str,
+        bindings: &BTreeMap<u32, Binding>,
+        count: usize,
+    ) -> Result<()> {
         let sizes: Vec<_> = bindings
             .values()
             .map(|b| {
                 vk::DescriptorPoolSize::default()
                     .ty(descriptor_type(b.kind))
-                    .descriptor_count(1)
+                    .descriptor_count(count as u32)
             })
             .collect();
+        let layouts = vec![self.set_layout; count];
         let device = &self.gpu.device;
-        // SAFETY: all that the infos point to outlives the calls; the pool frees the set.
+        // SAFETY: all that the infos point to outlives the calls; the pool frees the sets.
         unsafe {
             self.pool = device
                 .create_descriptor_pool(
                     &vk::DescriptorPoolCreateInfo::default()
-                        .max_sets(1)
+                        .max_sets(count as u32)
                         .pool_sizes(&sizes),
-                    None,
+                    self.gpu.callbacks(),
                 )
                 .map_err(failed(&format!("vkCreateDescriptorPool of {name}")))?;
-            self.set = device
+            self.sets = device
                 .allocate_descriptor_sets(
                     &vk::DescriptorSetAllocateInfo::default()
                         .descriptor_pool(self.pool)
-                        .set_layouts(&[self.set_layout]),
+                        .set_layouts(&layouts),
                 )
-                .map_err(failed(&format!("vkAllocateDescriptorSets of {name}")))?[0];
+                .map_err(failed(&format!("vkAllocateDescriptorSets of {name}")))?;
         }
-        self.gpu.name(self.set, name);
+        for set in &self.sets {
+            self.gpu.name(*set, name);
+        }
         Ok(())
     }
 
-    fn write(&self, name: &str, binding: &Binding, resources: &Resources) -> Result<()> {
+    fn write(
+        &self,
+        name: &str,
+        set: vk::DescriptorSet,
+        binding: &Binding,
+        sources: &Sources,
+    ) -> Result<()> {
         let write = vk::WriteDescriptorSet::default()
-            .dst_set(self.set)
+            .dst_set(set)
             .dst_binding(binding.binding)
             .descriptor_type(descriptor_type(binding.kind));
-        let update = |write| {
-            // SAFETY: the set is in no use yet, and the resource is of the declared kind.
-            unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) }
+        // SAFETY: the set is in no use yet, and the resource is of the declared kind; so too below.
+        let update = |write: vk::WriteDescriptorSet| unsafe {
+            self.gpu.device.update_descriptor_sets(&[write], &[]);
         };
-        match (resources.get(binding.name), binding.kind) {
-            (Some(Resource::Buffer(buffer)), BindingKind::StorageBuffer) => {
-                let info = [vk::DescriptorBufferInfo::default()
-                    .buffer(buffer.raw)
-                    .range(vk::WHOLE_SIZE)];
-                update(write.buffer_info(&info));
+        let buffer = |buffer, offset, range| {
+            let info = [vk::DescriptorBufferInfo {
+                buffer,
+                offset,
+                range,
+            }];
+            update(write.buffer_info(&info));
+        };
+        let image = |view, layout| {
+            let info = [vk::DescriptorImageInfo::default()
+                .image_view(view)
+                .image_layout(layout)];
+            update(write.image_info(&info));
+        };
+        let found = sources.iter().find_map(|source| source.get(binding.name));
+        match (found, binding.kind) {
+            (Some(Resource::Buffer(own)), BindingKind::StorageBuffer) => {
+                buffer(own.raw, 0, vk::WHOLE_SIZE);
             }
-            (
-                Some(Resource::Image(image)),
-                BindingKind::StorageImage | BindingKind::SampledImage,
-            ) => {
-                let info = [vk::DescriptorImageInfo::default()
-                    .image_view(image.view)
-                    .image_layout(vk::ImageLayout::GENERAL)];
-                update(write.image_info(&info));
+            (Some(Resource::HostBuffer(lent)), BindingKind::StorageBuffer) => {
+                buffer(lent.raw, lent.offset, lent.range);
+            }
+            (Some(Resource::Image(own)), BindingKind::StorageImage | BindingKind::SampledImage) => {
+                image(own.view, vk::ImageLayout::GENERAL)
+            }
+            (Some(Resource::HostImage(lent)), BindingKind::SampledImage) => {
+                image(lent.view, HostImage::SAMPLED);
             }
             (found, kind) => {
                 let what = if found.is_some() {
@@ -319,13 +337,13 @@ impl Pass {
 
 impl Drop for Pass {
     fn drop(&mut self) {
-        let device = &self.gpu.device;
+        let (device, callbacks) = (&self.gpu.device, self.gpu.callbacks());
         // SAFETY: destroyed once, null handles are ignored; whoever submitted work has waited for it.
         unsafe {
-            device.destroy_pipeline(self.pipeline, None);
-            device.destroy_pipeline_layout(self.layout, None);
-            device.destroy_descriptor_pool(self.pool, None);
-            device.destroy_descriptor_set_layout(self.set_layout, None);
+            device.destroy_pipeline(self.pipeline, callbacks);
+            device.destroy_pipeline_layout(self.layout, callbacks);
+            device.destroy_descriptor_pool(self.pool, callbacks);
+            device.destroy_descriptor_set_layout(self.set_layout, callbacks);
         }
     }
 }
@@ -335,66 +353,5 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
-    }
-}
-
-/// A shader module; needed only while the pipeline is created.
-struct Module<'a> {
-    gpu: &'a Gpu,
-    raw: vk::ShaderModule,
-}
-
-impl<'a> Module<'a> {
-    fn new(gpu: &'a Gpu, shader: &Shader) -> Result<Self> {
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(shader.words);
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V that shaderc wrote.
-        let raw = unsafe { gpu.device.create_shader_module(&info, None) }
-            .map_err(failed(&format!("vkCreateShaderModule of {}", shader.name)))?;
-        Ok(Self { gpu, raw })
-    }
-
-    fn stage<'b>(
-        &self,
-        stage: vk::ShaderStageFlags,
-        constants: &'b vk::SpecializationInfo<'b>,
-    ) -> vk::PipelineShaderStageCreateInfo<'b> {
-        vk::PipelineShaderStageCreateInfo::default()
-            .stage(stage)
-            .module(self.raw)
-            .name(c"main")
-            .specialization_info(constants)
-    }
-}
-
-impl Drop for Module<'_> {
-    fn drop(&mut self) {
-        // SAFETY: destroyed once; pipelines do not need their modules.
-        unsafe { self.gpu.device.destroy_shader_module(self.raw, None) };
-    }
-}
-
-struct Constants {
-    entries: Vec<vk::SpecializationMapEntry>,
-    values: Vec<u32>,
-}
-
-impl Constants {
-    fn new(specialization: &Specialization) -> Self {
-        let entry = |(i, &(id, _)): (usize, &(u32, u32))| vk::SpecializationMapEntry {
-            constant_id: id,
-            offset: 4 * i as u32,
-            size: 4,
-        };
-        Self {
-            entries: specialization.iter().enumerate().map(entry).collect(),
-            values: specialization.iter().map(|&(_, value)| value).collect(),
-        }
-    }
-
-    fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default()
-            .map_entries(&self.entries)
-            .data(bytemuck::cast_slice(&self.values))
     }
 }

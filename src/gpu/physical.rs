@@ -27,7 +27,7 @@ pub struct DeviceInfo {
     pub missing: Vec<String>,
 }
 
-fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo {
+pub(super) fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> DeviceInfo {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default()
@@ -110,7 +110,9 @@ pub(super) fn pick(
     };
     if let Some(wanted) = wanted {
         let all = names(&found);
-        found.retain(|(_, info)| info.name.to_lowercase().contains(&wanted.to_lowercase()));
+        let wanted_lower = wanted.to_lowercase();
+        let named = |info: &DeviceInfo| info.name.to_lowercase().contains(&wanted_lower);
+        found.retain(|(_, info)| info.uuid == wanted_lower || named(info));
         if found.is_empty() {
             return Err(Error::Unsupported(format!(
                 "no Vulkan device is called \"{wanted}\"; there are: {all}"

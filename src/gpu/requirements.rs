@@ -2,6 +2,9 @@
 
 use ash::vk;
 
+use super::host::{Enabled, HostDevice};
+use crate::error::{Error, Result};
+
 /// What a device allows, as far as the engine's sizes depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
@@ -17,6 +20,8 @@ pub struct Limits {
     pub memory_bytes: u64,
     /// [byte] Memory that a frame may take, however much there is.
     pub allowed_bytes: u64,
+    /// [byte] What offsets of storage buffers are multiples of.
+    pub storage_alignment: u64,
     /// [turn] Loop turns after which the driver ends all loops of an invocation, whatever their conditions.
     pub loop_turns: u32,
 }
@@ -50,7 +55,7 @@ impl Features {
 }
 
 /// Formats and how each is used.
-const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 5] = [
+pub const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 5] = [
     (
         vk::Format::D32_SFLOAT,
         vk::FormatFeatureFlags::from_raw(
@@ -79,9 +84,10 @@ const FORMATS: [(vk::Format, vk::FormatFeatureFlags, &str); 5] = [
         vk::Format::R32G32B32A32_SFLOAT,
         vk::FormatFeatureFlags::from_raw(
             vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw()
+                | vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw()
                 | vk::FormatFeatureFlags::SAMPLED_IMAGE.as_raw(),
         ),
-        "R32G32B32A32_SFLOAT as a sampled colour attachment",
+        "R32G32B32A32_SFLOAT as a sampled colour attachment and storage image",
     ),
     (
         vk::Format::R8G8B8A8_UNORM,
@@ -98,14 +104,17 @@ const STORAGE_BUFFERS: u32 = 13;
 /// [invocation] Largest work group.
 const GROUP_INVOCATIONS: u32 = 64;
 
+/// What a queue family must be able to do.
+pub const QUEUE_FLAGS: vk::QueueFlags =
+    vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
+
 /// A queue family that can do everything, if there is one.
 pub fn queue_family(instance: &ash::Instance, device: vk::PhysicalDevice) -> Option<u32> {
     // SAFETY: the device was enumerated from this instance.
     let families = unsafe { instance.get_physical_device_queue_family_properties(device) };
-    let all = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
     families
         .iter()
-        .position(|family| family.queue_flags.contains(all))
+        .position(|family| family.queue_flags.contains(QUEUE_FLAGS))
         .map(|index| index as u32)
 }
 
@@ -149,6 +158,7 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
             .max()
             .unwrap_or(0),
         allowed_bytes: u64::MAX,
+        storage_alignment: properties.limits.min_storage_buffer_offset_alignment.max(1),
         loop_turns: match driver {
             vk::DriverId::MESA_LLVMPIPE => LAVAPIPE_LOOP_TURNS,
             _ => u32::MAX,
@@ -210,6 +220,22 @@ fn subgroup_arithmetic(instance: &ash::Instance, device: vk::PhysicalDevice) -> 
             .contains(vk::SubgroupFeatureFlags::ARITHMETIC)
 }
 
+/// The names of required features that are off.
+fn off(enabled: &Enabled) -> impl Iterator<Item = &'static str> {
+    [
+        (
+            enabled.shader_storage_image_extended_formats,
+            "shaderStorageImageExtendedFormats",
+        ),
+        (enabled.scalar_block_layout, "scalarBlockLayout"),
+        (enabled.dynamic_rendering, "dynamicRendering"),
+        (enabled.synchronization2, "synchronization2"),
+        (enabled.maintenance4, "maintenance4"),
+    ]
+    .into_iter()
+    .filter_map(|(on, name)| (!on).then_some(name))
+}
+
 fn missing_features(
     instance: &ash::Instance,
     device: vk::PhysicalDevice,
@@ -223,18 +249,85 @@ fn missing_features(
     // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
     unsafe { instance.get_physical_device_features2(device, &mut found) };
     let core = found.features;
-    for (have, name) in [
-        (
-            core.shader_storage_image_extended_formats,
-            "shaderStorageImageExtendedFormats",
-        ),
-        (v12.scalar_block_layout, "scalarBlockLayout"),
-        (v13.dynamic_rendering, "dynamicRendering"),
-        (v13.synchronization2, "synchronization2"),
-        (v13.maintenance4, "maintenance4"),
-    ] {
-        if have == vk::FALSE {
-            missing.push(name.into());
+    let there = Enabled {
+        shader_storage_image_extended_formats: core.shader_storage_image_extended_formats
+            == vk::TRUE,
+        scalar_block_layout: v12.scalar_block_layout == vk::TRUE,
+        dynamic_rendering: v13.dynamic_rendering == vk::TRUE,
+        synchronization2: v13.synchronization2 == vk::TRUE,
+        maintenance4: v13.maintenance4 == vk::TRUE,
+    };
+    missing.extend(off(&there).map(str::to_owned));
+}
+
+/// The functions of a host's instance.
+///
+/// # Errors
+/// The instance is too old to ask for what is required.
+///
+/// # Safety
+/// The instance is alive, and the function its own.
+pub unsafe fn load_instance(
+    get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+    instance: vk::Instance,
+) -> Result<ash::Instance> {
+    // A function that is not there would end the program when it is called.
+    for name in [c"vkGetPhysicalDeviceFeatures2", c"vkGetDeviceProcAddr"] {
+        // SAFETY: the caller's promise.
+        if unsafe { get_instance_proc_addr(instance, name.as_ptr()) }.is_none() {
+            return Err(Error::Unsupported(format!(
+                "the host's instance has no {}; create it for Vulkan 1.3",
+                name.to_string_lossy()
+            )));
         }
+    }
+    let functions = ash::StaticFn {
+        get_instance_proc_addr,
+    };
+    // SAFETY: the caller's promise.
+    Ok(unsafe { ash::Instance::load(&functions, instance) })
+}
+
+/// The names of everything required that a host's device lacks.
+///
+/// # Errors
+/// As for [`load_instance`].
+///
+/// # Safety
+/// The handles are alive and belong together.
+pub unsafe fn lacking(
+    get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+    instance: vk::Instance,
+    physical: vk::PhysicalDevice,
+) -> Result<Vec<String>> {
+    // SAFETY: the caller's promise.
+    let instance = unsafe { load_instance(get_instance_proc_addr, instance) }?;
+    Ok(missing(&instance, physical))
+}
+
+/// Whether a host's device can run the engine and was created so that it does.
+///
+/// # Errors
+/// [`Error::Unsupported`] with the names of what is missing.
+pub fn check_host(instance: &ash::Instance, host: &HostDevice) -> Result<()> {
+    let mut lacking = missing(instance, host.physical);
+    if host.api_version < vk::API_VERSION_1_3 {
+        lacking.push("Vulkan 1.3 asked for by the instance".into());
+    }
+    lacking.extend(off(&host.enabled).map(|name| format!("{name} enabled")));
+    // SAFETY: the device was enumerated from this instance.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(host.physical) };
+    let serves = families
+        .get(host.family as usize)
+        .is_some_and(|family| family.queue_flags.contains(QUEUE_FLAGS));
+    if !serves {
+        lacking.push("graphics and compute in the queue family".into());
+    }
+    match lacking.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Unsupported(format!(
+            "the host's device lacks {}",
+            lacking.join(", ")
+        ))),
     }
 }

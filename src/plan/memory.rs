@@ -1,11 +1,12 @@
 //! The sizes of a frame's resources, against what the device allows.
 
-use super::Plan;
 use super::text::human;
+use super::{Casters, Front, Plan};
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
+use crate::scene::Scene;
 use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, SECTOR_STEPS, View};
-use crate::shot::Shot;
+use crate::shot::Settings;
 use crate::technique::{Recipe, Work};
 
 /// Resources that the host fills or reads, by way of memory that it sees.
@@ -23,9 +24,35 @@ const COPIED: [&str; 11] = [
     "picture",
 ];
 
+/// How much of a scene there is, or may be.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Inventory {
+    pub vertices: u64,
+    pub triangles: u64,
+    pub materials: u64,
+    pub texcoords: u64,
+    /// [byte] Of all textures.
+    pub texels: u64,
+    /// Of a host's meshes in a frame.
+    pub instances: u64,
+}
+
+impl Inventory {
+    pub fn of(scene: &Scene) -> Self {
+        let texels = scene.textures.iter().map(|texture| texture.rgba.len());
+        Self {
+            vertices: scene.positions.len() as u64,
+            triangles: scene.triangles.len() as u64,
+            materials: scene.materials.len() as u64,
+            texcoords: scene.texcoords.len() as u64,
+            texels: texels.sum::<usize>() as u64,
+            instances: 0,
+        }
+    }
+}
+
 impl Plan {
-    pub(super) fn list_resources(&mut self, shot: &Shot) {
-        let scene = &shot.scene;
+    pub(super) fn list_resources(&mut self, settings: &Settings, inventory: &Inventory) {
         let pixels = u64::from(self.size.0) * u64::from(self.size.1);
         let map = u64::from(self.map) * u64::from(self.map);
         let views = self.views().count() as u64;
@@ -41,47 +68,67 @@ impl Plan {
             .map(|light| light.recipe.words)
             .max()
             .unwrap_or(0);
-        let grid = u64::from(self.size.0.div_ceil(shot.settings.packet.0))
-            * u64::from(self.size.1.div_ceil(shot.settings.packet.1));
+        let grid = u64::from(self.size.0.div_ceil(settings.packet.0))
+            * u64::from(self.size.1.div_ceil(settings.packet.1));
         // One for each pixel or for each lane of each packet.
-        let lanes = u64::from(shot.settings.packet.0 * shot.settings.packet.1);
+        let lanes = u64::from(settings.packet.0 * settings.packet.1);
         let progress = if words > 0 {
             (grid * lanes).max(pixels)
         } else {
             0
         };
         let padded = u64::from(self.map.next_power_of_two());
-        let triangles = scene.triangles.len() as u64;
+        let Inventory {
+            vertices,
+            triangles,
+            ..
+        } = *inventory;
         let textured = u64::from(self.textured);
         let per_pixel = |needed: bool, bytes: usize| if needed { pixels * bytes as u64 } else { 0 };
-        let texels: usize = scene
-            .textures
-            .iter()
-            .map(|texture| texture.rgba.len())
-            .sum();
+        let drawn = u64::from(self.front == Front::Drawn);
+        let host = 1 - drawn;
+        let fitted = u64::from(matches!(self.casters, Casters::Scene | Casters::Gathered));
         self.resources = vec![
-            ("positions", scene.positions.len() as u64 * 12),
+            ("positions", vertices * 12),
             ("triangles", triangles * 12),
-            ("triangle_surfaces", triangles * 4),
+            ("triangle_surfaces", drawn * triangles * 4),
             (
                 "surfaces",
-                scene.materials.len() as u64 * size_of::<shared::Surface>() as u64,
+                inventory.materials * size_of::<shared::Surface>() as u64,
             ),
-            ("texcoords", textured * scene.texcoords.len() as u64 * 8),
+            ("texcoords", textured * inventory.texcoords * 8),
             (
                 "vertex_surfaces",
-                if self.masked {
-                    scene.positions.len() as u64 * 4
+                if self.masked { vertices * 4 } else { 0 },
+            ),
+            ("texels", textured * inventory.texels),
+            ("camera_depth", drawn * pixels * 4),
+            ("position_world", pixels * 16),
+            ("normal_world", pixels * 16),
+            ("albedo", drawn * pixels * 4),
+            (
+                "caster_indices",
+                if views > 0 {
+                    fitted * triangles * 12
                 } else {
                     0
                 },
             ),
-            ("texels", textured * texels as u64),
-            ("camera_depth", pixels * 4),
-            ("position_world", pixels * 16),
-            ("normal_world", pixels * 16),
-            ("albedo", pixels * 4),
-            ("caster_indices", if views > 0 { triangles * 12 } else { 0 }),
+            ("host", host * size_of::<shared::Host>() as u64),
+            (
+                "instances",
+                inventory.instances * size_of::<shared::Instance>() as u64,
+            ),
+            (
+                "givens",
+                (1 - fitted) * views * size_of::<shared::Given>() as u64,
+            ),
+            (
+                "projections",
+                u64::from(self.casters == Casters::DrawnByHost)
+                    * views
+                    * size_of::<shared::Projection>() as u64,
+            ),
             ("shadow_map", map * 4),
             (
                 "mssm",

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::gpu::{Buffer, Gpu, Image, ImageKind, Resources};
-use crate::plan::Plan;
+use crate::plan::{Front, Plan};
 use crate::scene::{Material, Scene};
 use crate::shared::{self, Surface, View};
 use crate::shot::Shot;
 
-/// Resources under the names that shaders know them by. Everything that a shader could name exists; what
-/// the plan leaves out is an empty placeholder.
+/// Resources of a drawn scene, under the names that shaders know them by. Everything that a shader could name exists;
+/// what the plan leaves out is an empty placeholder.
 pub fn create(
     gpu: &Arc<Gpu>,
     plan: &Plan,
@@ -18,16 +18,36 @@ pub fn create(
     costs: shared::Costs,
     exposure: shared::Exposure,
 ) -> Result<Resources> {
-    let mut resources = Resources::default();
+    let mut resources = create_common(gpu, plan, costs)?;
     create_scene(gpu, plan, &shot.scene, &mut resources)?;
+    let exposure = Buffer::with_data(gpu, "exposure", &[exposure])?;
+    resources.add_buffer("exposure", exposure);
+    Ok(resources)
+}
+
+/// Resources of a host's frame: nothing is known yet of what stands where.
+pub fn create_for_host(gpu: &Arc<Gpu>, plan: &Plan, costs: shared::Costs) -> Result<Resources> {
+    let mut resources = create_common(gpu, plan, costs)?;
+    let names = [
+        "positions",
+        "triangles",
+        "surfaces",
+        "texcoords",
+        "vertex_surfaces",
+        "texels",
+        "host",
+        "instances",
+    ];
+    add_planned(gpu, plan, &names, &mut resources)?;
+    Ok(resources)
+}
+
+fn create_common(gpu: &Arc<Gpu>, plan: &Plan, costs: shared::Costs) -> Result<Resources> {
+    let mut resources = Resources::default();
     create_views(gpu, plan, &mut resources)?;
     create_images(gpu, plan, &mut resources)?;
-    for (name, data) in [
-        ("costs", bytemuck::bytes_of(&costs)),
-        ("exposure", bytemuck::bytes_of(&exposure)),
-    ] {
-        resources.add_buffer(name, Buffer::with_data(gpu, name, data)?);
-    }
+    let costs = Buffer::with_data(gpu, "costs", &[costs])?;
+    resources.add_buffer("costs", costs);
     let counters = [shared::Counters::default()];
     resources.add_buffer("counters", Buffer::with_data(gpu, "counters", &counters)?);
     let names = [
@@ -42,11 +62,23 @@ pub fn create(
         "progress",
         "visibility",
         "picture",
+        "givens",
+        "projections",
     ];
+    add_planned(gpu, plan, &names, &mut resources)?;
+    Ok(resources)
+}
+
+fn add_planned(
+    gpu: &Arc<Gpu>,
+    plan: &Plan,
+    names: &[&'static str],
+    resources: &mut Resources,
+) -> Result<()> {
     for name in names {
         resources.add_buffer(name, Buffer::new(gpu, name, planned(plan, name))?);
     }
-    Ok(resources)
+    Ok(())
 }
 
 fn planned(plan: &Plan, name: &str) -> u64 {
@@ -119,17 +151,27 @@ fn create_views(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resul
     let mut sectors: Vec<f32> = Vec::new();
     let mut views: Vec<View> = Vec::new();
     for planned in plan.views() {
-        let mut view = planned.view;
+        views.push(planned.view);
         if let Some(table) = &planned.sectors {
-            view.sector_first = sectors.len() as u32;
             sectors.extend_from_slice(table);
         }
-        views.push(view);
+    }
+    resources.add_buffer("sectors", Buffer::with_data(gpu, "sectors", &sectors)?);
+    if plan.front == Front::Imported {
+        // They come with each frame.
+        let lights = (plan.lights.len() * size_of::<shared::Light>()) as u64;
+        for (name, bytes) in [
+            ("frame", size_of::<shared::Frame>() as u64),
+            ("views", (views.len() * size_of::<View>()) as u64),
+            ("lights", lights),
+        ] {
+            resources.add_buffer(name, Buffer::new(gpu, name, bytes)?);
+        }
+        return Ok(());
     }
     let lights: Vec<shared::Light> = plan.lights.iter().map(|light| light.light).collect();
     resources.add_buffer("frame", Buffer::with_data(gpu, "frame", &[plan.frame])?);
     resources.add_buffer("views", Buffer::with_data(gpu, "views", &views)?);
-    resources.add_buffer("sectors", Buffer::with_data(gpu, "sectors", &sectors)?);
     resources.add_buffer("lights", Buffer::with_data(gpu, "lights", &lights)?);
     Ok(())
 }
@@ -148,10 +190,20 @@ fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Resu
     let layers = plan.lights.iter().map(|light| light.recipe.layers);
     let layers = layers.max().unwrap_or(0).max(1);
     let images = [
-        ("camera_depth", ImageKind::Depth, plan.size, 1),
+        (
+            "camera_depth",
+            ImageKind::Depth,
+            side(plan, "camera_depth", plan.size),
+            1,
+        ),
         ("position_world", ImageKind::Vector, plan.size, 1),
         ("normal_world", ImageKind::Vector, plan.size, 1),
-        ("albedo", ImageKind::Color, plan.size, 1),
+        (
+            "albedo",
+            ImageKind::Color,
+            side(plan, "albedo", plan.size),
+            1,
+        ),
         ("shadow_map", ImageKind::Depth, map, 1),
         (
             "mssm",

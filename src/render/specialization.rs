@@ -1,7 +1,7 @@
 //! Specialization constants: `glsl/lib/constants.glsl` on the host's side.
 
 use crate::gpu::Specialization;
-use crate::plan::{Plan, Variant};
+use crate::plan::{Casters, Plan, Variant};
 use crate::shot::{Leaf, Mapping, Occluders, Pattern, Settings, Technique};
 use crate::technique::{Recipe, Work};
 
@@ -43,6 +43,7 @@ pub fn of_view(
         (19, settings.blocker_samples),
         (20, settings.filter_samples),
         (21, u32::from(filter_reach)),
+        (23, u32::from(plan.casters == Casters::Maps)),
     ]
 }
 
@@ -56,4 +57,9 @@ pub fn of_casters(base: &Specialization, masked: bool, peel: bool) -> Specializa
 /// Constants of passes that no view's variant matters to.
 pub fn of_frame(plan: &Plan) -> Specialization {
     vec![(9, u32::from(plan.textured))]
+}
+
+/// Constants of the pass that reads a host's surface: positions, or else depths.
+pub fn of_import(positions: bool) -> Specialization {
+    vec![(24, u32::from(positions))]
 }

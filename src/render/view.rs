@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::gpu::{
-    Attachments, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Recorder, Resources,
-    Specialization,
+    Attachments, Commands, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Resources,
+    Sources, Specialization,
 };
-use crate::plan::{Plan, Variant};
+use crate::plan::{Casters, Plan, Variant};
 use crate::shared::{Fit, GROUP_SIZE, Lists, Push, TILE_SIZE};
 use crate::shot::Settings;
 use crate::technique::{Recipe, Stage, Work};
@@ -18,12 +18,21 @@ use super::specialization;
 /// [texel] Frame of the shadow map that stays empty, so that contours close inside the map.
 const MAP_MARGIN: u32 = 1;
 
+/// Who draws the shadow maps of the frame that is being recorded.
+pub enum Maps<'a> {
+    /// The library, from triangles.
+    Own,
+    /// The host, into the view of that number.
+    DrawnByHost(&'a mut dyn FnMut(u32)),
+    /// The host has drawn them; those of the list of resources of that number.
+    Given(usize),
+}
+
 /// Pipelines of the views of one variant under one recipe.
 pub struct ViewPasses {
     receivers: ComputePass,
-    casters: ComputePass,
     fit: ComputePass,
-    first_layer: CasterPasses,
+    map: MapPasses,
     /// What draws the casters behind the layers that are kept.
     next_layers: Option<CasterPasses>,
     mssm: Option<ComputePass>,
@@ -32,6 +41,60 @@ pub struct ViewPasses {
     layers: u32,
     /// [dispatch] In how many rounds lists are worked off at most.
     rounds: u32,
+}
+
+/// What a view's shadow map comes from.
+enum MapPasses {
+    Triangles {
+        casters: ComputePass,
+        draw: CasterPasses,
+    },
+    DrawnByHost {
+        region: ComputePass,
+        projection: ComputePass,
+    },
+    Given(GraphicsPass),
+}
+
+impl MapPasses {
+    fn new(
+        gpu: &Arc<Gpu>,
+        plan: &Plan,
+        constants: &Specialization,
+        resources: &Resources,
+        maps: &[Resources],
+    ) -> Result<Self> {
+        let compute =
+            |name: &str, shader: &str| ComputePass::new(gpu, name, shader, constants, resources);
+        Ok(match plan.casters {
+            Casters::Scene | Casters::Gathered => Self::Triangles {
+                casters: compute("casters", "casters.comp")?,
+                draw: CasterPasses::new(gpu, plan, constants, resources, false)?,
+            },
+            Casters::DrawnByHost => Self::DrawnByHost {
+                region: compute("region", "region.comp")?,
+                projection: compute("projection", "projection.comp")?,
+            },
+            Casters::Maps => {
+                let state = GraphicsState {
+                    vertex: "whole_image.vert",
+                    fragment: Some("import_map.frag"),
+                    colors: &[],
+                    depth: true,
+                };
+                let lists: Vec<[&Resources; 2]> =
+                    maps.iter().map(|given| [given, resources]).collect();
+                let lists: Vec<&Sources> = lists.iter().map(|list| list.as_slice()).collect();
+                Self::Given(GraphicsPass::with_each(
+                    gpu,
+                    "shadow_map",
+                    &state,
+                    constants,
+                    &lists,
+                )?)
+            }
+        })
+    }
 }
 
 /// Draws of opaque and of alpha-masked casters.
@@ -53,6 +116,7 @@ impl CasterPasses {
                 vertex: "shadow_map.vert",
                 fragment: (masked || peel).then_some("shadow_map.frag"),
                 colors: &[],
+                depth: true,
             };
             let constants = specialization::of_casters(base, masked, peel);
             GraphicsPass::new(gpu, name, &state, &constants, resources)
@@ -70,8 +134,8 @@ impl CasterPasses {
     /// Draws the casters of view `push.index` into the shadow map.
     fn record(
         &self,
-        recorder: &mut Recorder,
-        name: &str,
+        commands: &mut Commands,
+        name: &'static str,
         resources: &Resources,
         push: Push,
     ) -> Result<()> {
@@ -81,18 +145,22 @@ impl CasterPasses {
             indices,
             command: (fits, in_fit(push.index, offset)),
         };
-        let mut draws = vec![(&self.opaque, casters(offset_of!(Fit, opaque_draw)))];
-        if let Some(masked) = &self.masked {
-            draws.push((masked, casters(offset_of!(Fit, masked_draw))));
-        }
-        let attachments = Attachments {
-            colors: &[],
-            depth: resources.image("shadow_map")?,
-            margin: MAP_MARGIN,
-        };
-        recorder.draw(name, push, &attachments, &draws);
+        let opaque = (self.opaque.with(0), casters(offset_of!(Fit, opaque_draw)));
+        let masked = (self.masked.as_ref())
+            .map(|masked| (masked.with(0), casters(offset_of!(Fit, masked_draw))));
+        let draws = [Some(opaque), masked].into_iter().flatten();
+        commands.draw(name, push, &into_map(resources)?, draws);
         Ok(())
     }
+}
+
+/// The shadow map, but for its margin.
+fn into_map(resources: &Resources) -> Result<Attachments<'static>> {
+    Ok(Attachments {
+        colors: &[],
+        depth: Some(resources.image("shadow_map")?.target()),
+        margin: MAP_MARGIN,
+    })
 }
 
 impl ViewPasses {
@@ -103,13 +171,13 @@ impl ViewPasses {
         recipe: &Recipe,
         variant: Variant,
         resources: &Resources,
+        maps: &[Resources],
     ) -> Result<Self> {
         let constants = |work| specialization::of_view(plan, settings, recipe, variant, work);
         let compute = |name: &str, shader: &str, work| {
             ComputePass::new(gpu, name, shader, &constants(work), resources)
         };
-        let casters =
-            |peel| CasterPasses::new(gpu, plan, &constants(Work::Packets), resources, peel);
+        let base = constants(Work::Packets);
         let structure = |wanted: bool, name: &str, shader: &str| {
             wanted
                 .then(|| compute(name, shader, Work::Pixels))
@@ -122,10 +190,11 @@ impl ViewPasses {
         let stage = |stage: &Stage| Ok((*stage, compute(stage.name, stage.shader, stage.work)?));
         Ok(Self {
             receivers: compute("receivers", "receivers.comp", Work::Pixels)?,
-            casters: compute("casters", "casters.comp", Work::Pixels)?,
             fit: compute("fit", "fit.comp", Work::Packets)?,
-            first_layer: casters(false)?,
-            next_layers: (recipe.layers > 1).then(|| casters(true)).transpose()?,
+            map: MapPasses::new(gpu, plan, &base, resources, maps)?,
+            next_layers: (recipe.layers > 1)
+                .then(|| CasterPasses::new(gpu, plan, &base, resources, true))
+                .transpose()?,
             mssm: structure(recipe.mssm, "mssm", mssm)?,
             hsm: structure(recipe.hsm, "hsm", "hsm.comp")?,
             stages: recipe.stages.iter().map(stage).collect::<Result<_>>()?,
@@ -137,26 +206,55 @@ impl ViewPasses {
     /// Shadow map and what is built from it, for view `index`, fitted to what can cast.
     pub fn record_map(
         &self,
-        recorder: &mut Recorder,
+        commands: &mut Commands,
         plan: &Plan,
         resources: &Resources,
+        maps: &mut Maps,
         index: u32,
     ) -> Result<()> {
         let push = Push { index, level: 0 };
-        let triangles = plan.frame.opaque_count + plan.frame.masked_count;
+        let once = || Groups::Direct([1, 1, 1]);
         let pixels = plan.size.0 * plan.size.1;
-        recorder.dispatch("receivers", &self.receivers, push, reduction(pixels));
-        recorder.dispatch("casters", &self.casters, push, reduction(triangles));
-        recorder.dispatch("fit", &self.fit, push, Groups::Direct([1, 1, 1]));
-        self.first_layer
-            .record(recorder, "shadow_map", resources, push)?;
-        self.record_structures(recorder, plan, resources, index)?;
-        self.record_layers(recorder, resources, index)
+        commands.dispatch("receivers", &self.receivers, push, reduction(pixels));
+        match &self.map {
+            MapPasses::Triangles { casters, .. } => {
+                let triangles = plan.frame.opaque_count + plan.frame.masked_count;
+                commands.dispatch("casters", casters, push, reduction(triangles));
+            }
+            MapPasses::DrawnByHost { region, .. } => {
+                commands.dispatch("region", region, push, once());
+            }
+            MapPasses::Given(_) => {}
+        }
+        commands.dispatch("fit", &self.fit, push, once());
+        match (&self.map, maps) {
+            (MapPasses::Triangles { draw, .. }, _) => {
+                draw.record(commands, "shadow_map", resources, push)?;
+            }
+            (MapPasses::DrawnByHost { projection, .. }, Maps::DrawnByHost(draw)) => {
+                commands.dispatch("projection", projection, push, once());
+                let map = into_map(resources)?;
+                commands.draw_by_host("shadow_map", &map, || draw(index));
+            }
+            (MapPasses::Given(import), Maps::Given(list)) => {
+                let views = plan.views().count();
+                let bound = import.with(*list * views + index as usize);
+                let draw = (bound, Draw::Vertices(3));
+                commands.draw("shadow_map", push, &into_map(resources)?, [draw]);
+            }
+            _ => {
+                return Err(crate::Error::Invalid(
+                    "the shadow maps of this frame come from elsewhere than was planned".into(),
+                ));
+            }
+        }
+        self.record_structures(commands, plan, resources, index)?;
+        self.record_layers(commands, resources, index)
     }
 
     fn record_structures(
         &self,
-        recorder: &mut Recorder,
+        commands: &mut Commands,
         plan: &Plan,
         resources: &Resources,
         index: u32,
@@ -166,14 +264,14 @@ impl ViewPasses {
             for level in 0..plan.levels {
                 let offset = offset_of!(Fit, level_groups) + level as usize * size_of::<[u32; 3]>();
                 let groups = Groups::Indirect(fits, in_fit(index, offset));
-                recorder.dispatch("mssm", mssm, Push { index, level }, groups);
+                commands.dispatch("mssm", mssm, Push { index, level }, groups);
             }
         }
         if let Some(hsm) = &self.hsm {
             for level in 1..=plan.hsm_levels() {
                 let side = plan.map.div_ceil(1 << level).div_ceil(TILE_SIZE);
                 let groups = Groups::Direct([side, side, 1]);
-                recorder.dispatch("hsm", hsm, Push { index, level }, groups);
+                commands.dispatch("hsm", hsm, Push { index, level }, groups);
             }
         }
         Ok(())
@@ -182,16 +280,16 @@ impl ViewPasses {
     /// Keeps layer after layer and draws the next into the shadow map.
     fn record_layers(
         &self,
-        recorder: &mut Recorder,
+        commands: &mut Commands,
         resources: &Resources,
         index: u32,
     ) -> Result<()> {
         let (map, layers) = (resources.image("shadow_map")?, resources.image("layers")?);
         for level in 0..self.layers {
             if let (1.., Some(casters)) = (level, &self.next_layers) {
-                casters.record(recorder, "peel", resources, Push { index, level })?;
+                casters.record(commands, "peel", resources, Push { index, level })?;
             }
-            recorder.copy_layer("keep_layer", map, layers, level);
+            commands.copy_layer("keep_layer", map, layers, level);
         }
         Ok(())
     }
@@ -199,33 +297,35 @@ impl ViewPasses {
     /// The technique's stages in view `index`.
     pub fn record_stages(
         &self,
-        recorder: &mut Recorder,
+        commands: &mut Commands,
         plan: &Plan,
         resources: &Resources,
         index: u32,
     ) -> Result<()> {
         let (fits, lists) = (resources.buffer("fits")?, resources.buffer("lists")?);
-        let push = |level| Push { index, level };
         for (stage, pass) in &self.stages {
-            let once = |groups| vec![(push(0), groups)];
-            let in_rounds = |offset: usize| -> Vec<_> {
-                let groups = |round: u32| {
-                    let offset = offset + round as usize * size_of::<[u32; 3]>();
-                    Groups::Indirect(lists, in_lists(index, offset))
-                };
-                (0..self.rounds)
-                    .map(|round| (push(round), groups(round)))
-                    .collect()
+            // Lists are worked off in rounds, each of which finds its own groups.
+            let in_list = |offset: usize, round: u32| {
+                let offset = offset + round as usize * size_of::<[u32; 3]>();
+                Groups::Indirect(lists, in_lists(index, offset))
             };
-            let in_fit = |offset| Groups::Indirect(fits, in_fit(index, offset));
-            let dispatches = match stage.work {
-                Work::Pixels => once(Groups::Direct(tiles(plan))),
-                Work::Kernels => once(in_fit(offset_of!(Fit, kernel_groups))),
-                Work::Packets => once(in_fit(offset_of!(Fit, classify_groups))),
-                Work::PacketList => in_rounds(offset_of!(Lists, packet_groups)),
-                Work::PixelList => in_rounds(offset_of!(Lists, pixel_groups)),
+            let groups = |round| match stage.work {
+                Work::Pixels => Groups::Direct(tiles(plan)),
+                Work::Kernels => {
+                    Groups::Indirect(fits, in_fit(index, offset_of!(Fit, kernel_groups)))
+                }
+                Work::Packets => {
+                    Groups::Indirect(fits, in_fit(index, offset_of!(Fit, classify_groups)))
+                }
+                Work::PacketList => in_list(offset_of!(Lists, packet_groups), round),
+                Work::PixelList => in_list(offset_of!(Lists, pixel_groups), round),
             };
-            recorder.dispatch_all(stage.name, pass, &dispatches);
+            let rounds = match stage.work {
+                Work::PacketList | Work::PixelList => self.rounds,
+                _ => 1,
+            };
+            let dispatch = |level| (pass.with(0), Push { index, level }, groups(level));
+            commands.dispatch_all(stage.name, (0..rounds).map(dispatch));
         }
         Ok(())
     }
@@ -233,7 +333,7 @@ impl ViewPasses {
 
 /// Work groups of a pass that reduces `count` items: each invocation takes several, so that few of them
 /// have to agree in memory.
-fn reduction(count: u32) -> Groups<'static> {
+pub fn reduction(count: u32) -> Groups<'static> {
     const ITEMS_PER_INVOCATION: u32 = 8;
     const GROUPS_MAX: u32 = 4096;
     let groups = count.div_ceil(GROUP_SIZE * ITEMS_PER_INVOCATION);

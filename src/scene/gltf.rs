@@ -7,14 +7,13 @@
 
 use std::path::Path;
 
-use glam::DVec3;
-
 use super::document::{Document, label};
 use super::emitters::Emitters;
-use super::geometry::{Geometry, double_area};
-use super::material::{Fate, Materials};
+use super::geometry::Geometry;
+use super::material::Materials;
 use super::notes::Notes;
 use super::tree::walk;
+use super::triangles::{centered, sorted};
 use super::{Scene, file};
 use crate::Result;
 
@@ -142,27 +141,12 @@ fn assemble<'a>(
     limits: &Limits,
     notes: &mut Notes,
 ) -> Result<Scene> {
-    let origin = center(&geometry.positions);
-    let positions: Vec<_> = geometry
-        .positions
-        .iter()
-        .map(|p| (p - origin).as_vec3())
-        .collect();
+    let (origin, positions) = centered(&geometry.positions);
     let mut materials = Materials::new(document, limits);
-    let (mut opaque, mut masked) = (Vec::new(), Vec::new());
-    for (&triangle, &material) in geometry.triangles.iter().zip(&geometry.materials) {
-        // What had an area in f64 may have none left in f32.
-        if double_area(triangle.map(|i| positions[i as usize].as_dvec3())) == 0.0 {
-            continue;
-        }
-        match materials.fate(material, notes)? {
-            Fate::Opaque(index) => opaque.push((triangle, index)),
-            Fate::Masked(index) => masked.push((triangle, index)),
-            Fate::LeftOut => {}
-        }
-    }
-    let opaque_count = opaque.len();
-    let (triangles, triangle_materials) = opaque.into_iter().chain(masked).unzip();
+    let mut triangles = geometry.triangles.into_iter().zip(geometry.materials);
+    let sorted = sorted(&positions, &mut triangles, |material| {
+        materials.fate(material, notes)
+    })?;
     Ok(Scene {
         origin,
         positions,
@@ -170,22 +154,11 @@ fn assemble<'a>(
             true => Vec::new(),
             false => geometry.texcoords,
         },
-        triangles,
-        triangle_materials,
-        opaque_count,
+        triangles: sorted.triangles,
+        triangle_materials: sorted.materials,
+        opaque_count: sorted.opaque_count,
         materials: materials.list,
         textures: materials.textures,
         ..Scene::default()
     })
-}
-
-/// [scene units] The centre of the bounding box; zero without positions.
-fn center(positions: &[DVec3]) -> DVec3 {
-    let Some(&first) = positions.first() else {
-        return DVec3::ZERO;
-    };
-    let (low, high) = positions
-        .iter()
-        .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
-    (low + high) * 0.5
 }

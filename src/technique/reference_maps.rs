@@ -11,7 +11,7 @@ use glam::DVec2;
 use super::{Recipe, hard};
 use crate::scene::{AreaLight, LightShape};
 use crate::shot::Settings;
-use crate::sub_light::SubLight;
+use crate::sub_light::Part;
 
 pub fn recipe() -> Recipe {
     hard::recipe()
@@ -21,9 +21,7 @@ pub fn recipe() -> Recipe {
 const PLASTIC: f64 = 1.324_717_957_244_746;
 
 /// Points of a low-discrepancy sequence on the light, all of the same weight.
-pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<SubLight> {
-    let (u, v, _) = light.frame();
-    let (half_u, half_v) = light.half_size();
+pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
     let point = |index: u32| {
         let share = DVec2::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC)) * f64::from(index);
         let at = (share + 0.5).fract();
@@ -31,7 +29,7 @@ pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<SubLight> {
             LightShape::Rect { .. } => 2.0 * at - 1.0,
             LightShape::Disc { .. } => at.x.sqrt() * DVec2::from_angle(2.0 * PI * at.y),
         };
-        SubLight::point(light.center + u * (at.x * half_u) + v * (at.y * half_v))
+        Part::point(at)
     };
     (0..settings.maps).map(point).collect()
 }

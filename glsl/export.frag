@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The visibility as a host's image: the same in all channels, and the background's where there is no surface.
+#include "pass.glsl"
+
+layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
+layout(binding = 1, scalar) readonly buffer HostBlock { Host host; };
+layout(binding = 2, scalar) readonly buffer Visibility { float visibility[]; };
+
+layout(location = 0) out vec4 result;
+
+void main() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    float value = visibility[pixel.y * frame.size.x + pixel.x];
+    // NaN is no surface, and compares false.
+    result = vec4(value >= 0.0 ? value : host.background);
+}

@@ -1,0 +1,51 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The visible surface from a host's images: positions, or depths with the host's projection, and normals.
+#include "pass.glsl"
+
+layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
+
+layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
+layout(binding = 1, scalar) readonly buffer HostBlock { Host host; };
+layout(binding = 2) uniform texture2D host_surface;
+layout(binding = 3) uniform texture2D host_normal;
+layout(binding = 4, rgba32f) writeonly uniform image2D position_world;
+layout(binding = 5, rgba32f) writeonly uniform image2D normal_world;
+
+// [scene units] The surface's position; w = 0 where there is none.
+vec4 position_at(ivec2 pixel) {
+    vec4 texel = texelFetch(host_surface, pixel, 0);
+    if (POSITIONS) return vec4(texel.xyz, texel.w > 0.0 ? 1.0 : 0.0);
+    vec2 window = 2.0 * (vec2(pixel) + 0.5) / vec2(frame.size) - 1.0;
+    vec4 clip = vec4(window, texel.x, 1.0);
+    vec4 world = host.world_from_clip[0] * clip.x + host.world_from_clip[1] * clip.y
+               + host.world_from_clip[2] * clip.z + host.world_from_clip[3] * clip.w;
+    return vec4(world.xyz / world.w, texel.x == host.depth_empty ? 0.0 : 1.0);
+}
+
+vec3 octahedral(vec2 e) {
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    vec2 folded = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+    return n.z < 0.0 ? vec3(folded, n.z) : n;
+}
+
+vec3 normal_at(ivec2 pixel) {
+    vec3 texel = texelFetch(host_normal, pixel, 0).xyz;
+    if (host.normal_encoding != NORMAL_SIGNED) texel = 2.0 * texel - 1.0;
+    if (host.normal_encoding == NORMAL_OCTAHEDRAL) texel = octahedral(texel.xy);
+    return host.normal_to_world[0] * texel.x + host.normal_to_world[1] * texel.y + host.normal_to_world[2] * texel.z;
+}
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size))) return;
+    vec4 position = position_at(ivec2(pixel));
+    vec3 normal = normal_at(ivec2(pixel));
+    // What has no direction is no surface.
+    float length_squared = dot(normal, normal);
+    bool surface = position.w > 0.0 && length_squared > 0.0;
+    // A normal of length 1 keeps its bits.
+    if (abs(length_squared - 1.0) > 1e-6) normal *= inversesqrt(length_squared);
+    imageStore(position_world, ivec2(pixel), surface ? position : vec4(0.0));
+    imageStore(normal_world, ivec2(pixel), surface ? vec4(normal, 0.0) : vec4(0.0));
+}

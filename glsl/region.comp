@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Bounds of casters that the host draws itself and that nothing is known of but how near they may be: the whole
+// region of the lines from the sub-light to the visible receivers (algorithm.md §10). One invocation.
+#include "pass.glsl"
+#include "bounds.glsl"
+#include "depth.glsl"
+#include "caster_region.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(binding = 0, scalar) readonly buffer Views { View views[]; };
+layout(binding = 1, scalar) buffer Fits { Fit fits[]; };
+layout(binding = 2, scalar) readonly buffer Givens { Given givens[]; };
+
+void main() {
+    Fit fit = fits[push.index];
+    if (fit.receiver_count == 0u) return;
+    View view = views[push.index];
+    Box light = box_of_light(view);
+    vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
+                       value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    float far = max(value_of(fit.receiver_bounds[2], 0.0), light.upper.z);
+    float near = min(givens[push.index].near, far);
+    // Along a plane the tangent changes one way: its largest value is at one of the ends.
+    vec4 edge = vec4(light.upper.xy, -light.lower.xy);
+    vec4 at_near = (edge + slopes * (near - light.lower.z)) / near;
+    vec4 at_far = (edge + slopes * (far - light.lower.z)) / far;
+    vec4 tangents = clamp(max(at_near, at_far), -TANGENT_MAX, TANGENT_MAX);
+    for (int i = 0; i < 4; ++i) fits[push.index].caster_bounds[i] = bound_of(tangents[i]);
+    fits[push.index].caster_bounds[4] = bound_of(-near);
+}

@@ -1,0 +1,238 @@
+//! Checks of what callers pass, before any of it is used.
+
+use std::ffi::{CStr, c_char, c_void};
+use std::path::PathBuf;
+
+use super::outcome::{Fault, Outcome};
+use super::types::HS_OUT_OF_HOST_MEMORY;
+
+/// What every structure begins with.
+#[repr(C)]
+#[derive(Clone, Copy)]
+struct Head {
+    kind: u32,
+    size: u32,
+    next: *const c_void,
+}
+
+/// A structure of the interface.
+///
+/// # Safety
+/// It is `repr(C)`, begins with `type`, `size` and `next`, and any bytes make a value of it.
+pub unsafe trait Structure: Copy {
+    const TYPE: u32;
+    const NAME: &'static str;
+}
+
+/// Declares which `type` belongs to which structure.
+macro_rules! structures {
+    ($($name:ident = $kind:ident,)*) => {$(
+        // SAFETY: a repr(C) structure of numbers, pointers and arrays of them that begins with a head; the test of
+        // the layouts looks at each.
+        unsafe impl $crate::c_api::check::Structure for $name {
+            const TYPE: u32 = $kind;
+            const NAME: &'static str = stringify!($name);
+        }
+    )*};
+}
+pub(crate) use structures;
+
+fn check<T: Structure>(pointer: *const T) -> Outcome {
+    let name = T::NAME;
+    let invalid = |text: String| Err(Fault::invalid(text));
+    if pointer.is_null() {
+        return invalid(format!("the pointer to {name} is NULL"));
+    }
+    if !pointer.is_aligned() {
+        return invalid(format!("the pointer to {name} is not aligned"));
+    }
+    // The type and size alone: a structure that is too short may end behind them.
+    // SAFETY: not NULL, aligned, and the caller promises a structure, which begins with these two.
+    let (kind, size) = unsafe {
+        let words = pointer.cast::<u32>();
+        (*words, *words.add(1))
+    };
+    if kind != T::TYPE {
+        return invalid(format!("{name}: type is {kind} and must be {}", T::TYPE));
+    }
+    if size as usize != size_of::<T>() {
+        return invalid(format!(
+            "{name}: size is {size} and this library's is {}; use the header that belongs to it",
+            size_of::<T>()
+        ));
+    }
+    // SAFETY: the structure is as large as the library's own.
+    let next = unsafe { (*pointer.cast::<Head>()).next };
+    match next.is_null() {
+        true => Ok(()),
+        false => invalid(format!("{name}: next must be NULL, for nothing extends it")),
+    }
+}
+
+/// A structure that the caller has filled.
+///
+/// # Safety
+/// `pointer` is NULL or points to a structure of at least the `size` that it states.
+pub unsafe fn input<T: Structure>(pointer: *const T) -> Outcome<T> {
+    check(pointer)?;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { *pointer })
+}
+
+/// As [`input`]; NULL stands for the defaults.
+///
+/// # Safety
+/// As for [`input`].
+pub unsafe fn optional<T: Structure>(pointer: *const T) -> Outcome<Option<T>> {
+    match pointer.is_null() {
+        true => Ok(None),
+        // SAFETY: the caller's promise.
+        false => unsafe { input(pointer) }.map(Some),
+    }
+}
+
+/// A structure that is to be filled.
+///
+/// # Safety
+/// As for [`input`], and nothing else uses it during the call.
+pub unsafe fn output<'a, T: Structure>(pointer: *mut T) -> Outcome<&'a mut T> {
+    check(pointer)?;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// Where a single value is to be written.
+///
+/// # Safety
+/// `pointer` is NULL or points to a value that nothing else uses during the call.
+pub unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
+    check_pointer(pointer, 1, name)?;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { &mut *pointer })
+}
+
+fn check_pointer<T>(pointer: *const T, count: u64, name: &str) -> Outcome<usize> {
+    if count > 0 && pointer.is_null() {
+        return Err(Fault::invalid(format!("{name} is NULL")));
+    }
+    if !pointer.is_aligned() {
+        return Err(Fault::invalid(format!("{name} is not aligned")));
+    }
+    let bytes = count.checked_mul(size_of::<T>() as u64);
+    match bytes.and_then(|bytes| isize::try_from(bytes).ok()) {
+        Some(_) => Ok(count as usize),
+        None => Err(Fault::invalid(format!(
+            "{name}: {count} elements are more than memory can hold"
+        ))),
+    }
+}
+
+/// `count` values that the caller has filled; NULL is fine when there are none.
+///
+/// # Safety
+/// `pointer` is NULL or points to `count` values, which nothing changes during the call.
+pub unsafe fn slice<'a, T: Copy>(pointer: *const T, count: u64, name: &str) -> Outcome<&'a [T]> {
+    let count = check_pointer(pointer, count, name)?;
+    if count == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
+}
+
+/// `count` structures that the caller has filled, each checked.
+///
+/// # Safety
+/// As for [`slice`].
+pub unsafe fn structures_of<'a, T: Structure>(
+    pointer: *const T,
+    count: u64,
+    name: &str,
+) -> Outcome<&'a [T]> {
+    let count = check_pointer(pointer, count, name)?;
+    for index in 0..count {
+        // SAFETY: the caller's promise.
+        check(unsafe { pointer.add(index) })?;
+    }
+    // SAFETY: the caller's promise; each was looked at.
+    unsafe { slice(pointer, count as u64, name) }
+}
+
+/// Copies `values` to the caller's memory, which must have room for exactly as many.
+///
+/// # Safety
+/// `pointer` is NULL or points to `count` values that nothing else uses during the call.
+pub unsafe fn fill<T: Copy>(pointer: *mut T, count: u64, values: &[T], name: &str) -> Outcome {
+    if count != values.len() as u64 {
+        return Err(Fault::invalid(format!(
+            "{name} has room for {count} values and must have it for {}",
+            values.len()
+        )));
+    }
+    check_pointer(pointer, count, name)?;
+    // SAFETY: checked, and the caller's promise; the caller's memory is not the library's.
+    unsafe { std::ptr::copy_nonoverlapping(values.as_ptr(), pointer, values.len()) };
+    Ok(())
+}
+
+/// A copy that fails instead of aborting where memory runs out.
+pub fn collected<T>(values: impl ExactSizeIterator<Item = T>, name: &str) -> Outcome<Vec<T>> {
+    let mut list = Vec::new();
+    list.try_reserve_exact(values.len()).map_err(|_| {
+        Fault::new(
+            HS_OUT_OF_HOST_MEMORY,
+            format!("no memory for {} {name}", values.len()),
+        )
+    })?;
+    list.extend(values);
+    Ok(list)
+}
+
+/// A text; None for NULL.
+///
+/// # Safety
+/// `pointer` is NULL or points to bytes that end with a NUL.
+pub unsafe fn text(pointer: *const c_char, name: &str) -> Outcome<Option<String>> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's promise.
+    let bytes = unsafe { CStr::from_ptr(pointer) };
+    match bytes.to_str() {
+        Ok(text) => Ok(Some(text.to_owned())),
+        Err(_) => Err(Fault::invalid(format!("{name} is not UTF-8"))),
+    }
+}
+
+/// A path that must be there.
+///
+/// # Safety
+/// As for [`text`].
+pub unsafe fn path(pointer: *const c_char, name: &str) -> Outcome<PathBuf> {
+    // SAFETY: the caller's promise.
+    match unsafe { text(pointer, name) }? {
+        Some(text) => Ok(text.into()),
+        None => Err(Fault::invalid(format!("{name} is NULL"))),
+    }
+}
+
+/// Writes a text, cut where there is no room left, with a NUL at its end.
+pub fn write_text(target: &mut [c_char], text: &str) {
+    let mut end = text.len().min(target.len() - 1);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    target.fill(0);
+    for (to, byte) in target.iter_mut().zip(text[..end].bytes()) {
+        *to = byte as c_char;
+    }
+}
+
+/// Whether a number that stands for yes or no is one.
+pub fn flag(value: u32, name: &str) -> Outcome<bool> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        other => Err(Fault::invalid(format!("{name} is 0 or 1, not {other}"))),
+    }
+}

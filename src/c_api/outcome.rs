@@ -1,0 +1,196 @@
+//! How a call ends: a code, and a sentence for people.
+
+use std::cell::RefCell;
+use std::ffi::c_char;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::context::Context;
+use super::handles;
+use super::types::*;
+use crate::Error;
+
+/// Why a call failed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    pub code: hs_result,
+    pub text: String,
+}
+
+pub type Outcome<T = ()> = Result<T, Fault>;
+
+impl Fault {
+    pub fn new(code: hs_result, text: impl Into<String>) -> Self {
+        Self {
+            code,
+            text: text.into(),
+        }
+    }
+
+    pub fn invalid(text: impl Into<String>) -> Self {
+        Self::new(HS_INVALID_ARGUMENT, text)
+    }
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        let code = match &error {
+            Error::Io { .. } => HS_IO,
+            Error::Parse { .. } => HS_PARSE,
+            Error::Invalid(_) => HS_INVALID_ARGUMENT,
+            Error::Unsupported(_) => HS_UNSUPPORTED,
+            Error::Memory { .. } => HS_OUT_OF_DEVICE_MEMORY,
+            Error::Vulkan { result, .. } => match *result {
+                vk::Result::ERROR_OUT_OF_HOST_MEMORY => HS_OUT_OF_HOST_MEMORY,
+                vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => HS_OUT_OF_DEVICE_MEMORY,
+                vk::Result::ERROR_DEVICE_LOST => HS_DEVICE_LOST,
+                _ => HS_INTERNAL,
+            },
+            Error::Interrupted | Error::Validation(_) => HS_INTERNAL,
+        };
+        Self::new(code, error.to_string())
+    }
+}
+
+thread_local! {
+    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Which context a call belongs to, as soon as it is known.
+#[derive(Default)]
+pub struct Scope {
+    context: Option<Arc<Context>>,
+}
+
+impl Scope {
+    /// Errors of this call belong to `context`. Errors: its device was lost, which nothing mends.
+    pub fn enter(&mut self, context: &Arc<Context>) -> Outcome {
+        self.context = Some(context.clone());
+        match context.is_lost() {
+            true => Err(Fault::new(
+                HS_DEVICE_LOST,
+                "the device was lost; destroy the context and create another",
+            )),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Runs an export's body: no panic leaves it, and the sentence of its error is kept.
+pub fn call(body: impl FnOnce(&mut Scope) -> Outcome) -> hs_result {
+    let mut scope = Scope::default();
+    let ended = catch_unwind(AssertUnwindSafe(|| body(&mut scope)));
+    let fault = match ended {
+        Ok(Ok(())) => return HS_OK,
+        Ok(Err(fault)) => fault,
+        Err(_) => Fault::new(
+            HS_INTERNAL,
+            "an error in the library; please report what was called",
+        ),
+    };
+    // Dropping the context's last reference may run code that panics, as any other.
+    let _ = catch_unwind(AssertUnwindSafe(|| {
+        LAST_ERROR.with_borrow_mut(|text| text.clone_from(&fault.text));
+        if let Some(context) = scope.context.take() {
+            context.remember(&fault);
+        }
+    }));
+    fault.code
+}
+
+/// Runs a body that cannot fail but might panic.
+pub fn quietly(body: impl FnOnce()) {
+    let _ = catch_unwind(AssertUnwindSafe(body));
+}
+
+/// Copies the sentence that belongs to the last call that failed: on `context`, or, where that is NULL, on this
+/// thread.
+///
+/// `text` receives at most `capacity` bytes of UTF-8 with a NUL at the end; it may be NULL when `capacity` is 0.
+/// Returns the number of bytes that the whole sentence takes with its NUL; 1 when there is none, 0 when `context`
+/// is not a context. Any thread may call it at any time.
+///
+/// # Safety
+/// `text` points to `capacity` writable bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hs_last_error(
+    context: *const hs_context,
+    text: *mut c_char,
+    capacity: u64,
+) -> u64 {
+    let mut length = 0;
+    quietly(|| {
+        let sentence = match context.is_null() {
+            true => Some(LAST_ERROR.with_borrow(String::clone)),
+            false => handles::CONTEXTS.get(context).map(|found| found.sentence()),
+        };
+        if let Some(sentence) = sentence {
+            length = sentence.len() as u64 + 1;
+            if !text.is_null() && capacity > 0 {
+                let room = usize::try_from(capacity).unwrap_or(usize::MAX);
+                let count = sentence.len().min(room - 1);
+                // SAFETY: the caller promises `capacity` bytes, of which at most `count` + 1 are written.
+                unsafe {
+                    std::ptr::copy_nonoverlapping(sentence.as_ptr(), text.cast::<u8>(), count);
+                    *text.add(count) = 0;
+                }
+            }
+        }
+    });
+    length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_error_has_its_code() {
+        let vulkan = |result| Error::Vulkan {
+            call: "vkQueueSubmit2".into(),
+            result,
+        };
+        let io = std::io::Error::from(std::io::ErrorKind::NotFound);
+        let cases = [
+            (Error::io("a", io), HS_IO),
+            (Error::parse("a", "b"), HS_PARSE),
+            (Error::Invalid("a".into()), HS_INVALID_ARGUMENT),
+            (Error::Unsupported("a".into()), HS_UNSUPPORTED),
+            (
+                vulkan(vk::Result::ERROR_OUT_OF_HOST_MEMORY),
+                HS_OUT_OF_HOST_MEMORY,
+            ),
+            (
+                vulkan(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY),
+                HS_OUT_OF_DEVICE_MEMORY,
+            ),
+            (vulkan(vk::Result::ERROR_DEVICE_LOST), HS_DEVICE_LOST),
+            (vulkan(vk::Result::ERROR_UNKNOWN), HS_INTERNAL),
+            (Error::Validation(vec!["a".into()]), HS_INTERNAL),
+        ];
+        for (error, code) in cases {
+            assert_eq!(Fault::from(error).code, code);
+        }
+    }
+
+    #[test]
+    fn a_panic_becomes_a_code() {
+        assert_eq!(call(|_| panic!("on purpose")), HS_INTERNAL);
+    }
+
+    #[test]
+    fn a_lost_device_stays_lost() {
+        let context = Context::without_device();
+        let lost = || Fault::new(HS_DEVICE_LOST, "vkQueueSubmit2 failed");
+        let first = call(|scope| {
+            scope.enter(&context)?;
+            Err(lost())
+        });
+        assert_eq!(first, HS_DEVICE_LOST);
+        for _ in 0..2 {
+            assert_eq!(call(|scope| scope.enter(&context)), HS_DEVICE_LOST);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Plans for a host's frames, of which only the shape is known beforehand: what stands where comes with each frame.
+
+use super::memory::Inventory;
+use super::survey::Survey;
+use super::views::{Site, whole_light};
+use super::{Casters, Front, Outputs, Plan};
+use crate::error::{Error, Result};
+use crate::gpu::Limits;
+use crate::scene::AreaLight;
+use crate::shared;
+use crate::shot::{MAX_SIZE, Settings};
+use crate::technique::Recipe;
+
+/// What a host's frames have in common.
+#[derive(Debug, Clone)]
+pub struct HostFrame {
+    /// [pixel]
+    pub size: (u32, u32),
+    /// Its shape counts, and whether it has extent; where it stands comes with each frame.
+    pub light: AreaLight,
+    pub settings: Settings,
+    pub casters: Casters,
+    /// Views along the light's plane as well, for receivers beyond 60° of its axis.
+    pub side_faces: bool,
+    /// [element] Most of the host's meshes in a frame, and of what they hold.
+    pub instances: u32,
+    pub vertices: u32,
+    pub triangles: u32,
+}
+
+impl HostFrame {
+    fn validate(&self) -> Result<()> {
+        let size = 1..=MAX_SIZE;
+        if !size.contains(&self.size.0) || !size.contains(&self.size.1) {
+            return Err(Error::Invalid(format!(
+                "an image is 1 to {MAX_SIZE} pixels wide and high, not {}x{}",
+                self.size.0, self.size.1
+            )));
+        }
+        self.light.validate()?;
+        self.settings.validate()?;
+        let most = u32::MAX / 3;
+        if self.vertices > most || self.triangles > most || self.instances > most {
+            return Err(Error::Invalid(format!(
+                "meshes, vertices and triangles are at most {most} each"
+            )));
+        }
+        let peeled = Recipe::new(&self.settings, self.light.is_point()).layers > 0;
+        let redrawn = matches!(self.casters, Casters::DrawnByHost | Casters::Maps);
+        if peeled && redrawn {
+            return Err(Error::Unsupported(
+                "several layers need casters that the library draws; give meshes, or a single layer".into(),
+            ));
+        }
+        if self.side_faces && self.casters == Casters::Maps {
+            return Err(Error::Unsupported(
+                "shadow maps of the host look along the light; leave the side faces out".into(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Plans a host's frames.
+///
+/// # Errors
+/// Something makes no sense, or exceeds the device's limits.
+pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
+    host.validate()?;
+    let settings = &host.settings;
+    let frame = shared::Frame {
+        size: [host.size.0, host.size.1],
+        ..Default::default()
+    };
+    let outputs = Outputs { picture: false };
+    let mut plan = Plan {
+        front: Front::Imported,
+        casters: host.casters,
+        ..Plan::empty(host.size, frame, outputs, settings, limits)
+    };
+    let found = Survey {
+        receivers: true,
+        casters: true,
+        faces: [true, false, false, false, false].map(|front| front || host.side_faces),
+    };
+    let site = host_site(settings, 0);
+    plan.add_light(settings, &site, &host.light, found, [0.0; 3]);
+    if host.casters == Casters::Maps {
+        // A host's map may be turned any way.
+        for view in plan.lights.iter_mut().flat_map(|light| &mut light.views) {
+            view.variant.oblique = true;
+        }
+    }
+    plan.size_map(settings, limits)?;
+    plan.list_passes(false);
+    let inventory = Inventory {
+        vertices: host.vertices.into(),
+        triangles: host.triangles.into(),
+        instances: host.instances.into(),
+        ..Inventory::default()
+    };
+    plan.list_resources(settings, &inventory);
+    plan.check(limits)?;
+    Ok(plan)
+}
+
+/// A host's positions are relative to whatever origin it has chosen.
+fn host_site(settings: &Settings, levels: u32) -> Site {
+    Site {
+        origin: glam::DVec3::ZERO,
+        map: settings.map,
+        bias: settings.bias,
+        levels,
+    }
+}
+
+impl Plan {
+    /// Moves the light of a host's frame, and its views, to where they stand now. Takes no memory.
+    ///
+    /// # Errors
+    /// The light is of another shape than the one that was planned.
+    pub fn place(&mut self, settings: &Settings, light: &AreaLight) -> Result<()> {
+        let site = host_site(settings, self.levels);
+        for planned in &mut self.lights {
+            let round = matches!(light.shape, crate::scene::LightShape::Disc { .. });
+            let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2]);
+            if recipe_changes || u32::from(round) != planned.light.round {
+                return Err(Error::Invalid(
+                    "the light has another shape than the one that the effect was made for".into(),
+                ));
+            }
+            let views =
+                planned.light.view_first..planned.light.view_first + planned.light.view_count;
+            let weight_sum = planned.light.weight_sum;
+            planned.light = whole_light(site.origin, light, [0.0; 3], weight_sum, views);
+            for view in &mut planned.views {
+                let sector_first = view.view.sector_first;
+                view.view = view.aspect.view(&site, light, sector_first);
+            }
+        }
+        Ok(())
+    }
+}

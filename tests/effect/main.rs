@@ -1,0 +1,370 @@
+//! Effects in a host's frames give what the renderer gives, and recording them takes no memory.
+
+#[path = "../support/gpu.rs"]
+mod gpu;
+mod host;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use ash::vk;
+use glam::{DMat4, DVec3};
+use halfshade::gpu::{Gpu, HostImageInfo};
+use halfshade::plan::{Casters, HostFrame};
+use halfshade::render::{
+    DEFAULT_COSTS, Effect, FrameInput, GivenMap, Mesh, MeshInstance, Renderer, SlotImages, Surface,
+};
+use halfshade::scene::{AreaLight, LightShape};
+use halfshade::shared::{Fit, NORMAL_SIGNED, View};
+use halfshade::shot::{Settings, Shot};
+
+use host::{Host, with_host};
+
+/// Counts what is allocated while it is told to.
+struct Counting;
+
+static COUNTS: AtomicBool = AtomicBool::new(false);
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: the system's allocator does the work.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if COUNTS.load(Ordering::Relaxed) {
+            ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        }
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const SIDE: u32 = 48;
+const PIXELS: usize = (SIDE * SIDE) as usize;
+const BACKGROUND: f32 = 0.25;
+/// Casters may be any distance away, and the host has no maps.
+const NO_MAPS: (f32, &[GivenMap]) = (0.1, &[]);
+const IDENTITY: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+fn settings(split: u32) -> Settings {
+    Settings {
+        split,
+        map: 64,
+        ..Settings::default()
+    }
+}
+
+/// A shot of the scene, drawn by the renderer, and what the host needs of it.
+struct Stage {
+    shot: Shot,
+    expected: Vec<f32>,
+    positions: Vec<[f32; 4]>,
+    normals: Vec<[f32; 4]>,
+    /// Of the first view.
+    map: Vec<f32>,
+    fit: Fit,
+    view: View,
+    side_faces: bool,
+}
+
+impl Stage {
+    fn new(gpu: &Arc<Gpu>, settings: Settings, disc: bool, vfov_deg: f64) -> Self {
+        let mut shot = gpu::load("plate", SIDE, settings);
+        shot.camera.vfov_deg = vfov_deg;
+        if disc {
+            shot.lights[0].shape = LightShape::Disc {
+                normal: DVec3::NEG_Y,
+                radius: 0.7,
+            };
+        }
+        let mut renderer: Renderer = gpu::renderer(gpu, &shot);
+        renderer.render().expect("a frame");
+        let texels = (shot.settings.map * shot.settings.map) as usize;
+        let read = |name| renderer.read_image(name, PIXELS).expect("a g-buffer");
+        let (positions, normals) = (read("position_world"), read("normal_world"));
+        let expected = renderer.visibility(0).expect("visibility");
+        renderer.render_view(0).expect("a view");
+        let views = || renderer.plan().views();
+        Self {
+            expected,
+            positions,
+            normals,
+            map: renderer.read_image("shadow_map", texels).expect("a map"),
+            fit: renderer.fits().expect("fits")[0],
+            view: views().next().expect("a view").view,
+            side_faces: views().any(|view| view.aspect.face > 0),
+            shot,
+        }
+    }
+
+    /// The light in the space of the positions.
+    fn light(&self) -> AreaLight {
+        let mut light = self.shot.lights[0].clone();
+        light.center -= self.shot.scene.origin;
+        light
+    }
+
+    fn frame(&self, casters: Casters) -> HostFrame {
+        HostFrame {
+            size: (SIDE, SIDE),
+            light: self.light(),
+            settings: self.shot.settings.clone(),
+            casters,
+            side_faces: self.side_faces,
+            instances: 4,
+            vertices: 1000,
+            triangles: 1000,
+        }
+    }
+
+    fn slot(&self, host: &mut Host, casters: Vec<HostImageInfo>) -> SlotImages {
+        let (size, float) = ((SIDE, SIDE), vk::Format::R32G32B32A32_SFLOAT);
+        SlotImages {
+            surface: host.image(float, size, bytemuck::cast_slice(&self.positions)),
+            normal: host.image(float, size, bytemuck::cast_slice(&self.normals)),
+            visibility: host.image(vk::Format::R32_SFLOAT, size, &[]),
+            casters,
+        }
+    }
+
+    /// The scene's triangles as meshes: the first with indices of 32 bits, the second of 16, the third without.
+    fn meshes(&self, host: &mut Host) -> Vec<Mesh> {
+        let scene = &self.shot.scene;
+        let corners =
+            |triangle: &[u32; 3]| triangle.map(|i| scene.positions[i as usize].to_array());
+        // Padded to 20 bytes each, and begun at an offset.
+        let mut strided = vec![0.0f32; 5];
+        for position in &scene.positions {
+            strided.extend([position.x, position.y, position.z, 7.0, 7.0]);
+        }
+        let shared = host.buffer(bytemuck::cast_slice(&strided)).0;
+        let thirds = scene.triangles.len() / 3;
+        let (wide, rest) = scene.triangles.split_at(thirds);
+        let (narrow, alone) = rest.split_at(thirds);
+        let narrow: Vec<u16> = narrow.as_flattened().iter().map(|&i| i as u16).collect();
+        // An odd number of leading indices, so that they begin in the middle of a word.
+        let mut shifted = vec![0u16];
+        shifted.extend(&narrow);
+        shifted.resize(shifted.len().next_multiple_of(2) + 2, 0);
+        let flat: Vec<[f32; 3]> = alone.iter().flat_map(corners).collect();
+        let mesh = Mesh {
+            vertices: shared,
+            vertex_offset: 20,
+            vertex_stride: 20,
+            vertex_count: scene.positions.len() as u32,
+            indices: host.buffer(bytemuck::cast_slice(wide)).0,
+            index_offset: 0,
+            index_bytes: 4,
+            triangle_count: wide.len() as u32,
+        };
+        vec![
+            mesh,
+            Mesh {
+                indices: host.buffer(bytemuck::cast_slice(&shifted)).0,
+                index_offset: 2,
+                index_bytes: 2,
+                triangle_count: (narrow.len() / 3) as u32,
+                ..mesh
+            },
+            Mesh {
+                vertices: host.buffer(bytemuck::cast_slice(&flat)).0,
+                vertex_offset: 0,
+                vertex_stride: 12,
+                vertex_count: flat.len() as u32,
+                indices: vk::Buffer::null(),
+                triangle_count: alone.len() as u32,
+                ..mesh
+            },
+        ]
+    }
+}
+
+/// A frame of meshes that stand in the world as they are.
+fn with_frame<T>(
+    light: &AreaLight,
+    meshes: usize,
+    serial: u64,
+    (near, maps): (f32, &[GivenMap]),
+    work: impl FnOnce(&mut FrameInput) -> T,
+) -> T {
+    let transform = [
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+    ];
+    let mut instances = (0..meshes).map(|mesh| MeshInstance { mesh, transform });
+    let mut maps = maps.iter().copied();
+    work(&mut FrameInput {
+        serial,
+        slot: 0,
+        light: light.clone(),
+        world_from_clip: DMat4::IDENTITY.as_mat4().to_cols_array_2d(),
+        normal_to_world: IDENTITY,
+        normal_encoding: NORMAL_SIGNED,
+        depth_empty: 0.0,
+        background: BACKGROUND,
+        instances: &mut instances,
+        near,
+        maps: &mut maps,
+        draw: None,
+    })
+}
+
+/// Records a frame and submits it; the number of allocations while it was recorded.
+fn record(host: &Host, effect: &mut Effect, frame: &mut FrameInput) -> usize {
+    host.begin();
+    ALLOCATIONS.store(0, Ordering::Relaxed);
+    COUNTS.store(true, Ordering::Relaxed);
+    // SAFETY: the command buffer is recording, and the images are at rest.
+    let recorded = unsafe { effect.record(host.commands, frame) };
+    COUNTS.store(false, Ordering::Relaxed);
+    recorded.expect("a frame");
+    host.submit();
+    ALLOCATIONS.load(Ordering::Relaxed)
+}
+
+fn visibility(host: &mut Host, slot: &SlotImages) -> Vec<f32> {
+    bytemuck::pod_collect_to_vec(&host.read(&slot.visibility, 4 * PIXELS))
+}
+
+/// The expected image with the background where there is no surface.
+fn exported(expected: &[f32]) -> Vec<f32> {
+    let of = |value: &f32| if value.is_nan() { BACKGROUND } else { *value };
+    expected.iter().map(of).collect()
+}
+
+/// An effect that is prepared for one slot of images.
+fn prepared(host: &Host, frame: HostFrame, slot: &SlotImages, meshes: &[Mesh]) -> Effect {
+    let (gpu, surface) = (host.adopted(), Surface::Positions);
+    let mut effect = Effect::new(&gpu, frame, surface, DEFAULT_COSTS).expect("an effect");
+    // SAFETY: all is of this device, as described, and outlives the effect.
+    unsafe { effect.prepare(std::slice::from_ref(slot), meshes) }.expect("prepared");
+    effect
+}
+
+/// Meshes in a host's buffers, against the renderer of the same scene.
+fn check_meshes(host: &mut Host, stage: &Stage) {
+    let seen = |test: fn(f32) -> bool| stage.expected.iter().any(|value| test(*value));
+    assert!(seen(f32::is_nan) && seen(|value| value > 0.0 && value < 1.0));
+    let slot = stage.slot(host, Vec::new());
+    let meshes = stage.meshes(host);
+    let mut effect = prepared(host, stage.frame(Casters::Gathered), &slot, &meshes);
+    for serial in 1..=2 {
+        let allocations = with_frame(&stage.light(), 3, serial, NO_MAPS, |frame| {
+            record(host, &mut effect, frame)
+        });
+        assert_eq!(allocations, 0, "recording takes no memory");
+        let found = visibility(host, &slot);
+        assert!(
+            gpu::same_bits(&found, &exported(&stage.expected)),
+            "frame {serial} differs"
+        );
+    }
+    check_collecting(host, stage, &mut effect, &slot, &meshes);
+}
+
+// All in one test: the counter counts what the whole program allocates.
+#[test]
+fn effects_give_what_the_renderer_gives() {
+    with_host(|host| {
+        let gpu = host.gpu.clone();
+        // Wide enough to see past the floor, and far enough along it for side faces.
+        let stage = Stage::new(&gpu, settings(1), false, 100.0);
+        assert!(stage.side_faces);
+        check_meshes(host, &stage);
+        check_maps(host, &stage);
+        let stage = Stage::new(&gpu, settings(2), true, 100.0);
+        check_meshes(host, &stage);
+    });
+}
+
+/// The matrix that a view's map was drawn with (`shadow_map.vert`).
+fn clip_from_world(stage: &Stage) -> [[f32; 4]; 4] {
+    let (view, fit) = (&stage.view, &stage.fit);
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+    let (right, up, forward) = (vector(view.right), vector(view.up), vector(view.forward));
+    let scale = 2.0 / f64::from(view.map_size);
+    let row = |axis: DVec3, focal: f32, center: f32| {
+        scale * (f64::from(focal) * axis + (f64::from(center) + 0.5) * forward) - forward
+    };
+    let rows = [
+        row(right, fit.focal[0], fit.center[0]),
+        row(up, fit.focal[1], fit.center[1]),
+        DVec3::ZERO,
+        forward,
+    ];
+    let moved = |row: DVec3| row.extend(-row.dot(vector(view.center)));
+    let mut rows = rows.map(moved);
+    rows[2].w = f64::from(fit.near);
+    let [x, y, z, w] = rows;
+    DMat4::from_cols(x, y, z, w)
+        .transpose()
+        .as_mat4()
+        .to_cols_array_2d()
+}
+
+/// A map that the host has already: the renderer's own.
+fn check_maps(host: &mut Host, stage: &Stage) {
+    let side = stage.shot.settings.map;
+    let texels = bytemuck::cast_slice(&stage.map);
+    let map = host.image(vk::Format::D32_SFLOAT, (side, side), texels);
+    let slot = stage.slot(host, vec![map]);
+    let frame = HostFrame {
+        side_faces: false,
+        ..stage.frame(Casters::Maps)
+    };
+    let mut effect = prepared(host, frame, &slot, &[]);
+    let given = [GivenMap {
+        clip_from_world: clip_from_world(stage),
+        depth_empty: 0.0,
+    }];
+    let maps = (stage.fit.near, given.as_slice());
+    let allocations = with_frame(&stage.light(), 0, 1, maps, |frame| {
+        record(host, &mut effect, frame)
+    });
+    assert_eq!(allocations, 0);
+    let (found, expected) = (visibility(host, &slot), exported(&stage.expected));
+    // The projection goes through a matrix of f32, and the map counts as turned: measured LARGEST.
+    let largest = gpu::largest_difference(&found, &expected);
+    println!("largest difference with a given map: {largest:e}");
+    assert!(largest < 1e-3, "{largest}");
+}
+
+/// What earlier frames use stays until it is collected, and serials do not go down.
+fn check_collecting(
+    host: &mut Host,
+    stage: &Stage,
+    effect: &mut Effect,
+    slot: &SlotImages,
+    meshes: &[Mesh],
+) {
+    // SAFETY: as in `prepared`.
+    let prepare = |effect: &mut Effect| {
+        unsafe { effect.prepare(std::slice::from_ref(slot), meshes) }.expect("prepared");
+    };
+    let once = effect.memory_bytes();
+    prepare(effect);
+    assert_eq!(effect.memory_bytes(), 2 * once, "frame 2 may be under way");
+    effect.collect(1);
+    assert_eq!(effect.memory_bytes(), 2 * once);
+    effect.collect(2);
+    assert_eq!(effect.memory_bytes(), once);
+    prepare(effect);
+    assert_eq!(effect.memory_bytes(), once, "no frame has used the last");
+    let refused = |effect: &mut Effect, meshes, serial| {
+        with_frame(&stage.light(), meshes, serial, NO_MAPS, |frame| {
+            // SAFETY: nothing is recorded.
+            let refused = unsafe { effect.record(host.commands, frame) };
+            refused.expect_err("it makes no sense").to_string()
+        })
+    };
+    assert!(refused(effect, 3, 1).contains("do not go down"));
+    assert!(refused(effect, 4, 6).contains("no mesh 3"));
+}
