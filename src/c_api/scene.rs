@@ -107,7 +107,7 @@ pub unsafe extern "C" fn hs_scene_describe(
 unsafe fn build(info: &hs_scene_info) -> Outcome<Scene> {
     // SAFETY: the caller's promise, here and below.
     let floats = |pointer: *const f32, each: u64, name| {
-        let count = info.vertex_count.checked_mul(each).unwrap_or(u64::MAX);
+        let count = info.vertex_count.saturating_mul(each);
         unsafe { slice(pointer, count, name) }
     };
     if info.triangle_count > MAX_TRIANGLES {

@@ -1,7 +1,5 @@
 //! Recording a host's frame.
 
-use std::ffi::c_void;
-
 use ash::vk;
 
 use super::check::{Structure, input, structures_of};
@@ -49,7 +47,7 @@ pub unsafe fn record(
         };
         if let Some(callback) = callback {
             // SAFETY: the caller's function with the caller's pointer.
-            unsafe { callback(&view, user as *mut c_void) };
+            unsafe { callback(&view, user) };
         }
     };
     let mut input = FrameInput {

@@ -48,7 +48,7 @@ impl Scene {
             },
         );
         let mut fates = given.indices.iter().copied().zip(fates);
-        let sorted = sorted(&positions, &mut fates, |fate| Ok(fate))?;
+        let sorted = sorted(&positions, &mut fates, Ok)?;
         Ok(Self {
             origin,
             positions,

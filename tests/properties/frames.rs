@@ -37,7 +37,7 @@ fn a_retained_frame_has_the_same_bits_and_draws_no_map() {
         let frame = renderer.render().expect("a frame");
         assert!(!frame.plan.is_retained());
         let first = renderer.visibility(0).expect("visibility");
-        assert!(renderer.recorded().iter().any(|name| *name == "shadow_map"));
+        assert!(renderer.recorded().contains(&"shadow_map"));
 
         let frame = renderer.render().expect("a frame");
         assert!(frame.plan.is_retained());

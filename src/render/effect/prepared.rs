@@ -375,7 +375,10 @@ fn check_mesh(mesh: &Mesh) -> Result<()> {
     if mesh.vertices == vk::Buffer::null() || mesh.vertex_count == 0 || mesh.triangle_count == 0 {
         return invalid("has no vertices or no triangles");
     }
-    if mesh.vertex_stride < 12 || mesh.vertex_stride % 4 != 0 || mesh.vertex_offset % 4 != 0 {
+    if mesh.vertex_stride < 12
+        || !mesh.vertex_stride.is_multiple_of(4)
+        || !mesh.vertex_offset.is_multiple_of(4)
+    {
         return invalid("has a stride below 12, or a stride or an offset that is no multiple of 4");
     }
     if indexed && !(mesh.index_bytes == 2 || mesh.index_bytes == 4) {
