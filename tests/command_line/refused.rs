@@ -96,6 +96,7 @@ fn settings_out_of_range() {
         ("--bias", "NaN", "finite"),
         ("--light", "1", "there is no light 1"),
         ("--ambient", "inf", "finite"),
+        ("--max-memory", "1KiB", "--max-memory allows 1.0 KiB"),
     ] {
         folder.refuses(&[&RENDER[..], &[flag, value]].concat(), &[range]);
     }
@@ -123,6 +124,7 @@ fn wrong_usage() {
         ("--size", "100000x100000", "32768"),
         ("--packet", "4", "4x4"),
         ("--repeat", "0", "1..=10000"),
+        ("--max-memory", "much", "512MiB"),
         ("--frobnicate", "1", "--frobnicate"),
     ] {
         folder.refuses_usage(&[&RENDER[..], &[flag, value]].concat(), &[word]);
