@@ -16,6 +16,7 @@ const LONGEST_MESSAGE: usize = 1000;
 
 /// A device of middling size.
 const LIMITS: Limits = Limits {
+    storage_alignment: 16,
     image_side: 16384,
     image_layers: 2048,
     image_bytes: 1 << 31,
