@@ -19,10 +19,10 @@ fn declared() -> BTreeSet<String> {
             .collect::<String>()
             .split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '('))
         {
-            if let Some((name, _)) = word.split_once('(') {
-                if name.starts_with("hs_") {
-                    names.insert(name.to_owned());
-                }
+            if let Some((name, _)) = word.split_once('(')
+                && name.starts_with("hs_")
+            {
+                names.insert(name.to_owned());
             }
         }
     }
