@@ -13,6 +13,7 @@ mod page;
 mod plot;
 mod run;
 mod sheet;
+pub mod stability;
 mod subject;
 mod sweep;
 mod table;

@@ -3,6 +3,7 @@
 mod figure;
 mod merge;
 mod pareto;
+mod stability;
 mod sweep_args;
 mod tune;
 
@@ -11,7 +12,8 @@ use halfshade::Result;
 /// Measures error against run time on your shots and device.
 ///
 /// `pareto` sweeps techniques and settings and reports all of them; `merge` joins parts of a sweep that ran on
-/// several machines; `tune` finds the settings to use; `figure` repeats what the publications measured.
+/// several machines; `tune` finds the settings to use; `figure` repeats what the publications measured;
+/// `stability` tries stiff and extreme cases.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(subcommand)]
@@ -23,6 +25,7 @@ enum What {
     Pareto(pareto::Args),
     Merge(merge::Args),
     Tune(tune::Args),
+    Stability(stability::Args),
     Figure(figure::Args),
 }
 
@@ -33,6 +36,7 @@ pub fn run(args: &Args) -> Result<()> {
         What::Pareto(args) => pareto::run(args),
         What::Merge(args) => merge::run(args),
         What::Tune(args) => tune::run(args),
+        What::Stability(args) => stability::run(args),
         What::Figure(args) => figure::run(args),
     }
 }

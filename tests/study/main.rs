@@ -4,6 +4,7 @@ mod figure;
 mod made_up;
 mod page;
 mod program;
+mod stability;
 
 #[path = "../support/gpu.rs"]
 mod support;

@@ -1,0 +1,91 @@
+//! `halfshade study stability`: stiff and extreme cases.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use halfshade::gpu::Gpu;
+use halfshade::image::{check_writable, write_atomically};
+use halfshade::shot::{Settings, Technique};
+use halfshade::study::stability::{Finding, cases, csv, examine, summary, truth};
+use halfshade::{Error, Result};
+
+use super::super::shot_args::DeviceArgs;
+use super::super::{on_interrupt, print, progress};
+
+/// Runs techniques on stiff and extreme cases: touching occluders, tiny and huge lights and scenes, grazing surfaces,
+/// degenerate triangles, closed bodies, odd sizes.
+///
+/// Prints for each technique and family of cases how many were unsound (not rendered, not finite, beyond [0, 1]), the
+/// largest mean error against rays, speckles (pixels that differ from all neighbours by more than the truth does) and
+/// leaks (pixels with light where there is none).
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Techniques, separated by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    techniques: Vec<Technique>,
+    /// Only cases whose name or family has this in it
+    #[arg(long, value_name = "TEXT")]
+    case: Option<String>,
+    /// Also maps of 4096 and 8192 texels
+    #[arg(long)]
+    large: bool,
+    /// A row for each technique and case
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Maps of `reference-maps`: it shows how hard shadows add up, not the truth.
+const REFERENCE_MAPS: u32 = 64;
+
+/// # Errors
+/// No case has that name, the device is lost, the file cannot be written, or Ctrl-C.
+pub fn run(args: &Args) -> Result<()> {
+    if let Some(file) = &args.output {
+        check_writable(file)?;
+    }
+    let findings = args.device.with_device(|gpu| measure(args, gpu))?;
+    if let Some(file) = &args.output {
+        let table = csv(&findings)?;
+        write_atomically(file, |out| out.write_all(table.as_bytes()))?;
+    }
+    print(&summary(&findings))
+}
+
+fn measure(args: &Args, gpu: &Arc<Gpu>) -> Result<Vec<Finding>> {
+    let interrupted = on_interrupt()?;
+    let mut cases = cases(args.large);
+    if let Some(text) = &args.case {
+        cases.retain(|case| case.name.contains(text) || case.family.contains(text));
+    }
+    if cases.is_empty() {
+        return Err(Error::Invalid(
+            "no case has that in its name or family".into(),
+        ));
+    }
+    let techniques = match args.techniques.is_empty() {
+        true => Technique::ALL,
+        false => &args.techniques,
+    };
+    let bar = progress::bar("examining", (cases.len() * techniques.len()) as u64);
+    let mut findings = Vec::new();
+    for case in &cases {
+        bar.set_message(case.name.clone());
+        let truth = truth(case, &interrupted)?;
+        for &technique in techniques {
+            if interrupted.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted);
+            }
+            let settings = Settings {
+                maps: REFERENCE_MAPS,
+                ..Settings::usual(technique)
+            };
+            findings.push(examine(gpu, case, &truth, &settings)?);
+            bar.inc(1);
+        }
+    }
+    bar.finish_and_clear();
+    Ok(findings)
+}

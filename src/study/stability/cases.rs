@@ -1,0 +1,445 @@
+//! The cases, each a departure from one plain stage: a plate between the ground and a square light.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use crate::scene::{AreaLight, Camera, LightShape, Scene, Shape};
+use crate::shot::{Settings, Shot, Technique};
+
+/// [pixel] Width and height of an image, unless its size is the case.
+const SIDE: u32 = 48;
+/// [texel] Width and height of a map, unless its size is the case.
+const MAP: u32 = 128;
+
+/// A shot with something extreme about it.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// What is extreme.
+    pub family: &'static str,
+    pub name: String,
+    pub shot: Shot,
+    /// What the case wants changed in a technique's settings.
+    changes: Changes,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Changes {
+    map: u32,
+    split: Option<u32>,
+    packet: Option<(u32, u32)>,
+}
+
+impl Case {
+    /// The shot with these settings as far as the case does not say otherwise.
+    pub fn with(&self, settings: &Settings) -> Shot {
+        let Changes { map, split, packet } = self.changes;
+        let splits = settings.technique != Technique::ReferenceMaps;
+        Shot {
+            settings: Settings {
+                map,
+                split: split.filter(|_| splits).unwrap_or(settings.split),
+                packet: packet.unwrap_or(settings.packet),
+                ..settings.clone()
+            },
+            ..self.shot.clone()
+        }
+    }
+}
+
+/// The plain stage, and what a case changes about it. Lengths in [scene units] before `scale`.
+#[derive(Debug, Clone)]
+struct Stage {
+    scale: f64,
+    offset: DVec3,
+    light_height: f64,
+    light_half: (f64, f64),
+    /// The light is tilted by so many degrees about z.
+    light_tilt: f64,
+    round: bool,
+    /// Height of the plate's middle, and what it is turned by about y and tilted by about z, in degrees.
+    plate_height: f64,
+    plate_half: f64,
+    plate_turn: f64,
+    plate_tilt: f64,
+    plate_aside: f64,
+    ground: bool,
+    more: Shape,
+    eye: DVec3,
+    target: DVec3,
+    size: (u32, u32),
+    changes: Changes,
+}
+
+impl Default for Stage {
+    fn default() -> Self {
+        Self {
+            scale: 1.0,
+            offset: DVec3::ZERO,
+            light_height: 2.0,
+            light_half: (0.5, 0.5),
+            light_tilt: 0.0,
+            round: false,
+            plate_height: 1.0,
+            plate_half: 0.4,
+            plate_turn: 17.0,
+            plate_tilt: 0.0,
+            plate_aside: 0.0,
+            ground: true,
+            more: Shape::default(),
+            eye: DVec3::new(0.3, 2.6, 4.2),
+            target: DVec3::new(0.0, 0.3, 0.0),
+            size: (SIDE, SIDE),
+            changes: Changes {
+                map: MAP,
+                split: None,
+                packet: None,
+            },
+        }
+    }
+}
+
+impl Stage {
+    fn case(self, family: &'static str, name: impl Into<String>) -> Case {
+        let place = |point: DVec3| point * self.scale + self.offset;
+        let mut plate = Shape::square(self.plate_half);
+        for point in &mut plate.positions {
+            let turned = rotated(*point, DVec3::Y, self.plate_turn);
+            *point = rotated(turned, DVec3::Z, self.plate_tilt)
+                + DVec3::new(self.plate_aside, self.plate_height, 0.0);
+        }
+        let ground = match self.ground {
+            true => Shape::square(4.0),
+            false => Shape::default(),
+        };
+        let colors = [
+            Vec3::splat(0.8),
+            Vec3::new(0.7, 0.4, 0.3),
+            Vec3::new(0.3, 0.5, 0.7),
+        ];
+        let mut parts: Vec<(Shape, Vec3)> = [ground, plate, self.more.clone()]
+            .into_iter()
+            .zip(colors)
+            .collect();
+        parts.retain(|(shape, _)| !shape.triangles.is_empty());
+        for point in parts.iter_mut().flat_map(|(shape, _)| &mut shape.positions) {
+            *point = place(*point);
+        }
+        let axis = |axis: DVec3| rotated(axis, DVec3::Z, self.light_tilt) * self.scale;
+        let (half_u, half_v) = self.light_half;
+        let shape = match self.round {
+            true => LightShape::Disc {
+                normal: rotated(-DVec3::Y, DVec3::Z, self.light_tilt),
+                radius: half_u * self.scale,
+            },
+            false => LightShape::Rect {
+                u: axis(DVec3::X) * half_u,
+                v: axis(DVec3::Z) * half_v,
+            },
+        };
+        let light = AreaLight {
+            name: String::new(),
+            center: place(DVec3::Y * self.light_height),
+            shape,
+            color: Vec3::ONE,
+            intensity: None,
+        };
+        let camera = Camera {
+            name: String::new(),
+            eye: place(self.eye),
+            target: place(self.target),
+            up: DVec3::Y,
+            vfov_deg: 40.0,
+            aspect: None,
+        };
+        Case {
+            family,
+            name: name.into(),
+            shot: Shot {
+                scene: Arc::new(Scene::of_shapes(&parts)),
+                camera,
+                width: self.size.0,
+                height: self.size.1,
+                lights: vec![light],
+                settings: Settings::default(),
+                notes: Vec::new(),
+            },
+            changes: self.changes,
+        }
+    }
+}
+
+fn rotated(point: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
+    glam::DQuat::from_axis_angle(axis, degrees.to_radians()) * point
+}
+
+/// All cases. `large`: those as well that take a CPU driver minutes.
+pub fn cases(large: bool) -> Vec<Case> {
+    let mut all = contacts();
+    all.extend(near_the_light());
+    all.extend(lights());
+    all.extend(places());
+    all.extend(grazing());
+    all.extend(edges());
+    all.extend(triangles());
+    all.extend(closed());
+    all.extend(sizes(large));
+    all
+}
+
+/// An occluder that touches the receiver, or nearly so.
+fn contacts() -> Vec<Case> {
+    let gaps = (0..=7).map(|power| 10f64.powi(-power)).chain([0.0]);
+    let plate = |gap: f64| Stage {
+        // At 1 it would touch the light.
+        plate_height: (gap * 2.0).min(1.9),
+        ..Stage::default()
+    };
+    gaps.map(|gap| {
+        plate(gap).case(
+            "contact",
+            format!("plate {gap:.0e} of the light's height above the ground"),
+        )
+    })
+    .collect()
+}
+
+/// An occluder that touches or crosses the light's plane, and a receiver in it.
+fn near_the_light() -> Vec<Case> {
+    let gaps = (1..=7).map(|power| 10f64.powi(-power)).chain([0.0]);
+    let plate = |gap: f64| Stage {
+        plate_height: 2.0 - 2.0 * gap,
+        plate_half: 0.2,
+        ..Stage::default()
+    };
+    let mut all: Vec<Case> = gaps
+        .map(|gap| {
+            plate(gap).case(
+                "near the light",
+                format!("plate {gap:.0e} of the light's height below the light"),
+            )
+        })
+        .collect();
+    let crossing = Stage {
+        plate_height: 2.0,
+        plate_tilt: 80.0,
+        ..Stage::default()
+    };
+    all.push(crossing.case("near the light", "plate across the light's plane"));
+    let beside = Stage {
+        plate_height: 2.0,
+        plate_aside: 1.5,
+        ..Stage::default()
+    };
+    all.push(beside.case("near the light", "receiver in the light's plane"));
+    all
+}
+
+/// Lights from points to skies, and from squares to lines.
+fn lights() -> Vec<Case> {
+    let mut all = Vec::new();
+    for power in -6..=3 {
+        let half = 0.5 * 10f64.powi(power);
+        let stage = |round| Stage {
+            light_half: (half, half),
+            round,
+            ..Stage::default()
+        };
+        all.push(stage(false).case("light's size", format!("light of half width {half:.0e}")));
+        if power % 3 == 0 {
+            all.push(stage(true).case("light's size", format!("disc of radius {half:.0e}")));
+        }
+    }
+    for power in 1..=4 {
+        let stage = Stage {
+            light_half: (0.5, 0.5 * 10f64.powi(-power)),
+            ..Stage::default()
+        };
+        all.push(stage.case(
+            "light's shape",
+            format!("aspect 1:{}", 10i32.pow(power as u32)),
+        ));
+    }
+    let point = Stage {
+        light_half: (0.0, 0.0),
+        ..Stage::default()
+    };
+    all.push(point.case("light's size", "light without area"));
+    all
+}
+
+/// Small and large scenes, far from the origin, and with a large range of depths.
+fn places() -> Vec<Case> {
+    let mut all = Vec::new();
+    for power in [-6, -3, 3, 6] {
+        let stage = Stage {
+            scale: 10f64.powi(power),
+            ..Stage::default()
+        };
+        all.push(stage.case("place", format!("scale 1e{power}")));
+    }
+    for (name, offset) in [
+        ("1e6 away along x", DVec3::X * 1e6),
+        (
+            "(148376, 1234, -223423) away",
+            DVec3::new(148_376.0, 1234.0, -223_423.0),
+        ),
+    ] {
+        let stage = Stage {
+            offset,
+            ..Stage::default()
+        };
+        all.push(stage.case("place", name));
+    }
+    let mut near = Shape::square(1e-7);
+    near.positions
+        .iter_mut()
+        .for_each(|point| point.y = 2.0 - 2e-7);
+    let stage = Stage {
+        more: near,
+        ..Stage::default()
+    };
+    all.push(stage.case("place", "depths from 1 to 1e7"));
+    all
+}
+
+/// Surfaces nearly along the light's rays, and lights nearly along surfaces.
+fn grazing() -> Vec<Case> {
+    let wall = |degrees: f64| Stage {
+        plate_tilt: degrees,
+        plate_half: 0.8,
+        plate_turn: 0.0,
+        eye: DVec3::new(4.2, 2.6, 0.3),
+        ..Stage::default()
+    };
+    let mut all: Vec<Case> = [60.0, 80.0, 89.0, 89.9, 90.0]
+        .map(|degrees| wall(degrees).case("grazing", format!("plate tilted by {degrees} degrees")))
+        .into();
+    for degrees in [60.0, 80.0, 89.9] {
+        let stage = Stage {
+            light_tilt: degrees,
+            light_height: 1.2,
+            plate_aside: 0.8,
+            plate_height: 0.5,
+            ..Stage::default()
+        };
+        all.push(stage.case("grazing", format!("light tilted by {degrees} degrees")));
+    }
+    all
+}
+
+/// Edges through the light's centre, along its border and its diagonals, on texels and between them.
+fn edges() -> Vec<Case> {
+    let plate = |aside: f64, turn: f64| Stage {
+        plate_aside: aside,
+        plate_turn: turn,
+        plate_half: 0.5,
+        ..Stage::default()
+    };
+    let mut all: Vec<Case> = [("centre", 0.5), ("border", 0.25), ("corner", 0.0)]
+        .map(|(where_, aside)| {
+            plate(aside, 0.0).case("edge", format!("edge along the light's {where_}"))
+        })
+        .into();
+    all.push(plate(0.5f64.sqrt(), 45.0).case("edge", "edges along the light's diagonals"));
+    for share in [0.25, 0.5, 0.75] {
+        let aside = 0.5 + share * 1.0 / f64::from(MAP);
+        all.push(plate(aside, 0.0).case("edge", format!("edge {share} of a texel on")));
+    }
+    all
+}
+
+/// Meshes as they should not be.
+fn triangles() -> Vec<Case> {
+    let with = |more: Shape, name: &str| {
+        let stage = Stage {
+            more,
+            ..Stage::default()
+        };
+        stage.case("triangles", name)
+    };
+    let lifted = |half: f64, height: f64| {
+        let mut shape = Shape::square(half);
+        shape
+            .positions
+            .iter_mut()
+            .for_each(|point| point.y = height);
+        shape
+    };
+    let mut twice = lifted(0.3, 0.6);
+    twice.append(&lifted(0.3, 0.6));
+    let mut needle = lifted(0.3, 0.6);
+    needle
+        .positions
+        .iter_mut()
+        .for_each(|point| point.z *= 1e-5);
+    let mut flat = lifted(0.3, 0.6);
+    flat.positions.iter_mut().for_each(|point| point.z = 0.0);
+    // Three sheets that share an edge.
+    let mut fan = lifted(0.3, 0.6);
+    for degrees in [60.0, 120.0] {
+        let mut sheet = Shape::square(0.3);
+        for point in &mut sheet.positions {
+            let along = *point + DVec3::X * 0.3;
+            *point = rotated(along, DVec3::Z, degrees) + DVec3::new(-0.3, 0.6, 0.0);
+        }
+        fan.append(&sheet);
+    }
+    vec![
+        with(twice, "every triangle twice"),
+        with(needle, "needles"),
+        with(flat, "triangles without area"),
+        with(fan, "three sheets at an edge"),
+    ]
+}
+
+/// Closed bodies, seen from inside: no light gets in.
+fn closed() -> Vec<Case> {
+    let inside = |more: Shape, name: &str| {
+        let stage = Stage {
+            more,
+            plate_height: 0.1,
+            plate_half: 0.05,
+            eye: DVec3::new(0.0, 0.55, 0.35),
+            target: DVec3::new(0.0, 0.45, -0.2),
+            ..Stage::default()
+        };
+        stage.case("closed", name)
+    };
+    let ball = Shape::ball(0.6, 48);
+    let cuboid = Shape::cuboid(DVec3::new(-0.6, 0.0, -0.6), DVec3::new(0.6, 1.1, 0.6));
+    vec![inside(ball, "in a ball"), inside(cuboid, "in a box")]
+}
+
+/// Images and maps of all sizes, packets that hang over the border, many parts.
+fn sizes(large: bool) -> Vec<Case> {
+    let mut all = Vec::new();
+    for size in [(1, 1), (1, 17), (31, 2), (47, 45)] {
+        let stage = Stage {
+            size,
+            ..Stage::default()
+        };
+        all.push(stage.case("size", format!("image of {}x{}", size.0, size.1)));
+    }
+    let maps: &[u32] = match large {
+        true => &[16, 17, 33, 1023, 4096, 8192],
+        false => &[16, 17, 33, 1023],
+    };
+    for &map in maps {
+        let mut stage = Stage::default();
+        stage.changes.map = map;
+        all.push(stage.case("size", format!("map of {map}")));
+    }
+    for packet in [(3, 5), (8, 8), (7, 1)] {
+        let mut stage = Stage {
+            size: (47, 45),
+            ..Stage::default()
+        };
+        stage.changes.packet = Some(packet);
+        all.push(stage.case("size", format!("packets of {}x{}", packet.0, packet.1)));
+    }
+    let mut stage = Stage::default();
+    stage.changes.split = Some(16);
+    all.push(stage.case("size", "256 parts"));
+    all
+}
