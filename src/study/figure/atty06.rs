@@ -109,6 +109,8 @@ pub const FIG19: Experiment = Experiment {
 const PLACES: [f64; 7] = [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3];
 /// [scene units] How far from the light's middle the least error may be to be roughly under it.
 const UNDER: f64 = 0.1;
+/// How many times the least error that at both ends has to be for the curve not to be flat.
+const AT_THE_ENDS: f64 = 1.1;
 
 pub const FIG20: Experiment = Experiment {
     name: "atty06-fig20",
@@ -182,26 +184,36 @@ pub fn patches(technique: Technique, map: u32) -> Settings {
     }
 }
 
-fn curve(rows: &[Row], model: Model) -> Curve {
-    Curve::of(rows, model.name(), PATCHES, Row::error)
-}
-
-/// The models that were measured.
-fn measured(rows: &[Row]) -> impl Iterator<Item = Model> {
-    let known = |model: &Model| rows.iter().any(|row| row.scene == model.name());
-    Model::ALL.into_iter().filter(known)
+/// Checks of each model's curve, with what the curve is called; one that is nothing but rounding says nothing.
+fn checks(
+    rows: &[Row],
+    judge: fn(model: Model, name: &str, errors: &Curve) -> Vec<Check>,
+) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for model in Model::ALL {
+        for series in [PATCHES, CONTOURS] {
+            let errors = Curve::of(rows, model.name(), series, Row::error);
+            let name = format!("{}, {series}", model.name());
+            let largest = errors.0.iter().map(|point| point.1).reduce(f64::max);
+            match largest {
+                None => {}
+                Some(largest) if largest < ROUNDING => checks.push(Check::new(
+                    format!("{name}: there is an error to speak of (above {ROUNDING})"),
+                    format!("{} at most, which is rounding", number(largest)),
+                    false,
+                )),
+                Some(_) => checks.extend(judge(model, &name, &errors)),
+            }
+        }
+    }
+    checks
 }
 
 fn judge_fig17(rows: &[Row]) -> Vec<Check> {
-    let mut checks = Vec::new();
-    for model in measured(rows) {
-        let errors = curve(rows, model);
+    checks(rows, |model, name, errors| {
         let coarse = errors.within(0.0, 200.0);
-        checks.push(Check::new(
-            format!(
-                "{}: the error falls up to 200 texels (τ ≤ −{CLEAR})",
-                model.name()
-            ),
+        let falls = Check::new(
+            format!("{name}: the error falls up to 200 texels (τ ≤ −{CLEAR})"),
             format!(
                 "τ = {}, from {} to {}",
                 number(coarse.trend()),
@@ -209,111 +221,90 @@ fn judge_fig17(rows: &[Row]) -> Vec<Check> {
                 number(coarse.last())
             ),
             coarse.trend() <= -CLEAR,
-        ));
+        );
         let fine = errors.within(200.0, f64::INFINITY);
         let gain = 1.0 - fine.last() / fine.first();
-        if Model::CLOSED.contains(&model) {
-            checks.push(Check::new(
-                format!(
-                    "{}: beyond 200 texels it falls by no more than a quarter",
-                    model.name()
-                ),
+        let rises = |pair: &&[(f64, f64)]| pair[1].1 > pair[0].1.max(ROUNDING);
+        let rises = errors.0.windows(2).filter(rises).count();
+        let then = match Model::CLOSED.contains(&model) {
+            true => Check::new(
+                format!("{name}: beyond 200 texels it falls by no more than a quarter"),
                 format!("by {} %", number(100.0 * gain)),
                 gain <= LIMIT,
-            ));
-        } else {
-            let rises = errors
-                .0
-                .windows(2)
-                .filter(|pair| pair[1].1 > pair[0].1.max(ROUNDING))
-                .count();
-            checks.push(Check::new(
-                format!(
-                    "{}: its curve has spikes (rises somewhere above rounding, {ROUNDING})",
-                    model.name()
-                ),
+            ),
+            false => Check::new(
+                format!("{name}: its curve has spikes (rises somewhere above {ROUNDING})"),
                 format!(
                     "rises in {rises} of {} steps",
                     errors.0.len().saturating_sub(1)
                 ),
                 rises > 0,
-            ));
-        }
-    }
-    checks
+            ),
+        };
+        vec![falls, then]
+    })
 }
 
 fn judge_fig18(rows: &[Row]) -> Vec<Check> {
-    let mut checks = Vec::new();
-    for model in measured(rows) {
-        let errors = curve(rows, model);
+    checks(rows, |_, name, errors| {
         let least = errors.lowest().map_or(f64::NAN, |point| point.0);
-        checks.push(Check::new(
-            format!(
-                "{}: the smallest light's error is more than the least",
-                model.name()
-            ),
-            format!(
-                "{}, the least is that of {}",
-                number(errors.first()),
-                number(least)
-            ),
-            errors.first() > errors.at(least),
-        ));
         let larger = errors.within(least, f64::INFINITY);
-        checks.push(Check::new(
-            format!(
-                "{}: from there on it rises with the light (τ ≥ {CLEAR})",
-                model.name()
+        vec![
+            Check::new(
+                format!("{name}: the smallest light's error is more than the least"),
+                format!(
+                    "{}, the least is that of {}",
+                    number(errors.first()),
+                    number(least)
+                ),
+                errors.first() > errors.at(least),
             ),
-            format!(
-                "τ = {}, up to {}",
-                number(larger.trend()),
-                number(larger.last())
+            Check::new(
+                format!("{name}: from there on it rises with the light (τ ≥ {CLEAR})"),
+                format!(
+                    "τ = {}, up to {}",
+                    number(larger.trend()),
+                    number(larger.last())
+                ),
+                larger.trend() >= CLEAR,
             ),
-            larger.trend() >= CLEAR,
-        ));
-    }
-    checks
+        ]
+    })
 }
 
 fn judge_fig19(rows: &[Row]) -> Vec<Check> {
-    let mut checks = Vec::new();
-    for model in measured(rows) {
-        let errors = curve(rows, model);
-        let least = errors.lowest().map_or(f64::NAN, |point| point.0);
-        checks.push(Check::new(
-            format!(
-                "{}: the error is least roughly under the light (within {UNDER})",
-                model.name()
-            ),
-            format!("least at {}", number(least)),
-            least.abs() <= UNDER,
-        ));
+    checks(rows, |_, name, errors| {
+        let (least, lowest) = errors.lowest().unwrap_or((f64::NAN, f64::NAN));
         let sides = [
             errors.within(f64::NEG_INFINITY, 0.0).trend(),
             errors.within(0.0, f64::INFINITY).trend(),
         ];
-        checks.push(Check::new(
-            format!(
-                "{}: it rises to both sides (τ ≤ −{CLEAR}, ≥ {CLEAR})",
-                model.name()
+        let rise = errors.first().min(errors.last()) / lowest;
+        vec![
+            Check::new(
+                format!(
+                    "{name}: the error is least roughly under the light (within {UNDER}), at the ends a tenth more"
+                ),
+                format!(
+                    "least at {}, at the ends {} times it",
+                    number(least),
+                    number(rise)
+                ),
+                least.abs() <= UNDER && rise >= AT_THE_ENDS,
             ),
-            format!("τ = {}", numbers(sides)),
-            sides[0] <= -CLEAR && sides[1] >= CLEAR,
-        ));
-    }
-    checks
+            Check::new(
+                format!("{name}: it rises to both sides (τ ≤ −{CLEAR}, ≥ {CLEAR})"),
+                format!("τ = {}", numbers(sides)),
+                sides[0] <= -CLEAR && sides[1] >= CLEAR,
+            ),
+        ]
+    })
 }
 
 fn judge_fig20(rows: &[Row]) -> Vec<Check> {
-    let rise = |model: Model| {
-        let errors = curve(rows, model);
-        Check::new(
-            format!(
-                "{}: the error rises towards the light (τ ≥ {CLEAR})",
-                model.name()
-            ),
+    checks(rows, |_, name, errors| {
+        vec![Check::new(
+            format!("{name}: the error rises towards the light (τ ≥ {CLEAR})"),
             format!(
                 "τ = {}, from {} to {}",
                 number(errors.trend()),
@@ -321,7 +312,6 @@ fn judge_fig20(rows: &[Row]) -> Vec<Check> {
                 number(errors.last())
             ),
             errors.trend() >= CLEAR,
-        )
-    };
-    measured(rows).map(rise).collect()
+        )]
+    })
 }

@@ -1,6 +1,7 @@
 //! Measures the trials of an experiment.
 
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -9,12 +10,14 @@ use crate::cpu::reference::ReferenceOptions;
 use crate::gpu::Gpu;
 use crate::render::DEFAULT_COSTS;
 use crate::shot::Settings;
+use crate::spread::Spread;
 use crate::{Error, Result};
 
 use super::super::bench::{Bench, Protocol};
 use super::super::run::Machine;
 use super::super::subject::Subject;
 use super::busy::Busy;
+use super::check::number;
 use super::report::Report;
 use super::{Experiment, Row, Scale, Trial};
 
@@ -65,15 +68,16 @@ impl Trials {
         };
         let bench = Bench::new(lab.gpu, protocol, lab.interrupted);
         let busy = Busy::watch();
-        let (mut rows, mut notes) = (Vec::new(), Vec::new());
+        let mut rows = Vec::new();
+        let mut off: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         for (index, trial) in self.trials.iter().enumerate() {
             let part = |share: f64| (index as f64 + share) / self.trials.len() as f64;
-            let (subject, note) = lab.subject(trial, &|share| {
+            let (subject, rays_off) = lab.subject(trial, &|share| {
                 (lab.progress)(part(0.5 * share), &trial.scene);
             })?;
             let progress = |share| (lab.progress)(part(0.5 + 0.5 * share), &trial.scene);
             rows.extend(lab.rows(&bench, protocol, trial, &subject, &progress)?);
-            notes.extend(note.map(|note| format!("{}: {note}", trial.scene)));
+            off.entry(trial.scene.clone()).or_default().extend(rays_off);
         }
         Ok(Report {
             experiment,
@@ -84,18 +88,30 @@ impl Trials {
             others: busy.others(),
             checks: experiment.judge(&rows),
             rows,
-            notes,
+            notes: off.iter().filter_map(closed_form).collect(),
         })
     }
 }
 
+/// Says of a scene's truth that it is a closed form, if it is.
+fn closed_form((scene, off): (&String, &Vec<f64>)) -> Option<String> {
+    let spread = Spread::of(off.iter().copied());
+    (!off.is_empty()).then(|| {
+        format!(
+            "{scene}: the truth is the closed form; rays are {} to {} off it on the mean over shadow pixels",
+            number(spread.min),
+            number(spread.max)
+        )
+    })
+}
+
 impl Lab<'_> {
-    /// A trial's shot with its truth, and what there is to say about it.
+    /// A trial's shot with its truth, and how far rays are off it where it has a closed form.
     fn subject(
         &self,
         trial: &Trial,
         progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<(Subject, Option<String>)> {
+    ) -> Result<(Subject, Option<f64>)> {
         let options = ReferenceOptions {
             samples: trial.samples,
             ..ReferenceOptions::default()
@@ -109,8 +125,8 @@ impl Lab<'_> {
             progress,
             self.interrupted,
         )?;
-        let note = trial.truth.apply(&mut subject)?;
-        Ok((subject, note))
+        let rays_off = trial.truth.apply(&mut subject)?;
+        Ok((subject, rays_off))
     }
 
     fn rows(
