@@ -13,8 +13,11 @@ const MAPS: [u32; 5] = [256, 512, 1024, 2048, 4096];
 /// [pixel] Few: they matter to nothing here but how many levels of the MSSM the largest kernel needs.
 const SIZE: u32 = 8;
 
-/// Name of a structure, who reads it, bits of a bound, its pass and its bytes.
+/// Name of a structure, the scene, who reads it, bits of a bound, its pass and its bytes. The kernels of the grid are
+/// the largest, so all levels of an MSSM are built; an HSM always has all, and over the grid's large maps its walks are
+/// longer than lavapipe lets a loop run.
 type Structure = (
+    &'static str,
     &'static str,
     Technique,
     u32,
@@ -25,6 +28,7 @@ type Structure = (
 const STRUCTURES: [Structure; 3] = [
     (
         "hsm",
+        "tree",
         Technique::MicropatchHierarchical,
         32,
         |pass| pass == "hsm",
@@ -32,6 +36,7 @@ const STRUCTURES: [Structure; 3] = [
     ),
     (
         "mssm_32",
+        "grid",
         Technique::PacketContour,
         32,
         |pass| pass == "mssm",
@@ -39,6 +44,7 @@ const STRUCTURES: [Structure; 3] = [
     ),
     (
         "mssm_16",
+        "grid",
         Technique::PacketContour,
         16,
         |pass| pass == "mssm",
@@ -56,11 +62,9 @@ fn bytes(renderer: &Renderer, name: &str) -> u64 {
 
 fn acceleration_structures(criterion: &mut Criterion<GpuTime>) {
     let gpu = open();
-    // Its kernels are the largest, so all levels are built.
-    let shot = shot("grid", SIZE);
     let mut group = criterion.benchmark_group("acceleration_structures");
     for map in MAPS {
-        for (name, technique, mssm_bits, counts, bytes) in STRUCTURES {
+        for (name, scene, technique, mssm_bits, counts, bytes) in STRUCTURES {
             let settings = Settings {
                 technique,
                 map,
@@ -68,7 +72,7 @@ fn acceleration_structures(criterion: &mut Criterion<GpuTime>) {
                 split: 1,
                 ..Settings::default()
             };
-            let make = || renderer(&gpu, &shot, settings.clone());
+            let make = || renderer(&gpu, &shot(scene, SIZE), settings.clone());
             bench(
                 &mut group,
                 &gpu,

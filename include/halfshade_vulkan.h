@@ -365,7 +365,8 @@ typedef struct hs_vk_view {
 } hs_vk_view;
 
 // Draws the casters of a view with the host's own pipelines. May bind what it likes, must not end rendering, and may
-// call nothing of this library.
+// call nothing of this library. Surfaces that shadow nothing that is seen, such as a flat ground, are best left out:
+// where they are nearer to the light than a receiver of the same surface, they hide the contours in front of them.
 typedef void (*hs_vk_draw)(const struct hs_vk_view *view, void *user);
 
 // A shadow map that the host has drawn.

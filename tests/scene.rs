@@ -135,6 +135,38 @@ fn nodes_place_and_instance_meshes() {
     assert_eq!(corners(&scene), instances);
 }
 
+/// Who is whose parent, and how nodes are called, is nobody's business but the file's.
+#[test]
+fn nodes_may_be_renamed_and_given_other_parents() {
+    let (translation, rotation, scale) =
+        ([10.0, -3.0, 0.7], [0.1, -0.7, 0.1, 0.7], [2.0, 0.3, 5.0]);
+    let mut whole = Gltf::triangle();
+    whole.json["nodes"][0] = json!({
+        "mesh": 0, "translation": translation, "rotation": rotation, "scale": scale,
+    });
+    let expected = whole.load().unwrap();
+
+    let mut renamed = whole.clone();
+    renamed.json["nodes"][0]["name"] = json!("another");
+    renamed.json["meshes"][0]["name"] = json!("one more");
+    assert_eq!(corners(&renamed.load().unwrap()), corners(&expected));
+
+    // Below two nodes that do nothing, and taken apart into three.
+    let mut below = whole.clone();
+    let below_it = below.push("nodes", json!({"children": [0]}));
+    let root = below.push("nodes", json!({"name": "root", "children": [below_it]}));
+    below.json["scenes"][0]["nodes"] = json!([root]);
+    assert_eq!(corners(&below.load().unwrap()), corners(&expected));
+
+    let mut apart = whole.clone();
+    apart.json["nodes"] = json!([
+        {"translation": translation, "children": [1]},
+        {"rotation": rotation, "children": [2]},
+        {"mesh": 0, "scale": scale},
+    ]);
+    assert_eq!(corners(&apart.load().unwrap()), corners(&expected));
+}
+
 #[test]
 fn negative_determinants_flip_the_winding() {
     let mut gltf = Gltf::triangle();

@@ -226,6 +226,7 @@ impl Bvh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Shape;
     use proptest::prelude::*;
 
     /// A bumpy height field of 2 × `side`² triangles that share all their edges, over [−1, 1]².
@@ -275,6 +276,40 @@ mod tests {
                     assert!(hit.is_some_and(|hit| hit.t < 1.0 + 1e-9), "{index} {other}");
                 }
             }
+        }
+    }
+
+    /// From points inside of closed bodies, along all edges' points and at all corners: not one ray gets out.
+    #[test]
+    fn no_ray_leaves_a_closed_body() {
+        let bodies = [
+            (Shape::ball(0.6, 48), DVec3::new(0.0, 0.6, 0.0)),
+            (
+                Shape::cuboid(DVec3::new(-0.6, 0.0, -0.6), DVec3::new(0.6, 1.1, 0.6)),
+                DVec3::new(0.0, 0.5, 0.0),
+            ),
+        ];
+        for (shape, middle) in bodies {
+            let scene = Scene::of_shapes(&[(shape, Vec3::ONE)]);
+            let bvh = Bvh::new(&scene).unwrap();
+            let mut stack = Vec::new();
+            let offsets = [DVec3::ZERO, DVec3::new(0.31, 0.17, -0.23), DVec3::X * 0.5];
+            let mut rays = 0;
+            for eye in offsets.map(|offset| middle + offset - scene.origin) {
+                for triangle in 0..scene.triangles.len() {
+                    let corners = scene.corners(triangle).map(|corner| corner.as_dvec3());
+                    for (from, share) in (0..3).flat_map(|i| [0.0, 0.25, 0.5].map(|t| (i, t))) {
+                        let target = corners[from].lerp(corners[(from + 1) % 3], share);
+                        let ray = Ray::new(eye, target - eye);
+                        rays += 1;
+                        assert!(
+                            bvh.any(&ray, &mut stack, f64::INFINITY, |_| true).is_some(),
+                            "from {eye} at {target}"
+                        );
+                    }
+                }
+            }
+            assert!(rays >= 300, "{rays} rays");
         }
     }
 

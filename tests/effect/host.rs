@@ -131,6 +131,7 @@ impl Host {
     pub fn buffer(&mut self, data: &[u8]) -> (vk::Buffer, vk::DeviceMemory) {
         let device = self.gpu.raw().1.clone();
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::VERTEX_BUFFER
             | vk::BufferUsageFlags::TRANSFER_SRC
             | vk::BufferUsageFlags::TRANSFER_DST;
         let info = vk::BufferCreateInfo::default()
@@ -157,10 +158,9 @@ impl Host {
         let usage = vk::ImageUsageFlags::SAMPLED
             | vk::ImageUsageFlags::TRANSFER_DST
             | vk::ImageUsageFlags::TRANSFER_SRC;
-        let depth = format == vk::Format::D32_SFLOAT;
-        let attachment = match depth {
-            true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-            false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+        let attachment = match aspects(format).0 {
+            vk::ImageAspectFlags::DEPTH => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            _ => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
@@ -266,10 +266,13 @@ impl Host {
     }
 }
 
-fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
+/// What of a format is copied, and what changes its layout.
+fn aspects(format: vk::Format) -> (vk::ImageAspectFlags, vk::ImageAspectFlags) {
+    let (depth, color) = (vk::ImageAspectFlags::DEPTH, vk::ImageAspectFlags::COLOR);
     match format {
-        vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
-        _ => vk::ImageAspectFlags::COLOR,
+        vk::Format::D32_SFLOAT => (depth, depth),
+        vk::Format::D32_SFLOAT_S8_UINT => (depth, depth | vk::ImageAspectFlags::STENCIL),
+        _ => (color, color),
     }
 }
 
@@ -277,7 +280,7 @@ fn region(image: &HostImageInfo) -> vk::BufferImageCopy {
     vk::BufferImageCopy::default()
         .image_subresource(
             vk::ImageSubresourceLayers::default()
-                .aspect_mask(aspect(image.format))
+                .aspect_mask(aspects(image.format).0)
                 .layer_count(1),
         )
         .image_extent(vk::Extent3D {
@@ -306,7 +309,7 @@ fn turn(
         .image(image.raw)
         .subresource_range(
             vk::ImageSubresourceRange::default()
-                .aspect_mask(aspect(image.format))
+                .aspect_mask(aspects(image.format).1)
                 .level_count(1)
                 .layer_count(1),
         )];

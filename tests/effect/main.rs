@@ -3,6 +3,8 @@
 #[path = "../support/gpu.rs"]
 mod gpu;
 mod host;
+mod kinds;
+mod painter;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
@@ -13,7 +15,8 @@ use glam::{DMat4, DVec3};
 use halfshade::gpu::{Gpu, HostImageInfo};
 use halfshade::plan::{Casters, HostFrame};
 use halfshade::render::{
-    DEFAULT_COSTS, Effect, FrameInput, GivenMap, Mesh, MeshInstance, Renderer, SlotImages, Surface,
+    DEFAULT_COSTS, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, Renderer,
+    SlotImages, Surface,
 };
 use halfshade::scene::{AreaLight, LightShape};
 use halfshade::shared::{Fit, NORMAL_SIGNED, View};
@@ -49,8 +52,6 @@ static ALLOCATOR: Counting = Counting;
 const SIDE: u32 = 48;
 const PIXELS: usize = (SIDE * SIDE) as usize;
 const BACKGROUND: f32 = 0.25;
-/// Casters may be any distance away, and the host has no maps.
-const NO_MAPS: (f32, &[GivenMap]) = (0.1, &[]);
 const IDENTITY: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 fn settings(split: u32) -> Settings {
@@ -75,15 +76,12 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(gpu: &Arc<Gpu>, settings: Settings, disc: bool, vfov_deg: f64) -> Self {
+    /// Wide enough to see past the floor, and far enough along it for side faces. `change`: what is different about
+    /// the light.
+    fn new(gpu: &Arc<Gpu>, settings: Settings, change: impl FnOnce(&mut AreaLight)) -> Self {
         let mut shot = gpu::load("plate", SIDE, settings);
-        shot.camera.vfov_deg = vfov_deg;
-        if disc {
-            shot.lights[0].shape = LightShape::Disc {
-                normal: DVec3::NEG_Y,
-                radius: 0.7,
-            };
-        }
+        shot.camera.vfov_deg = 100.0;
+        change(&mut shot.lights[0]);
         let mut renderer: Renderer = gpu::renderer(gpu, &shot);
         renderer.render().expect("a frame");
         let texels = (shot.settings.map * shot.settings.map) as usize;
@@ -186,12 +184,30 @@ impl Stage {
     }
 }
 
+/// What the host does for the casters itself.
+struct OwnCasters<'a> {
+    near: f32,
+    maps: &'a [GivenMap],
+    draw: Option<&'a mut dyn FnMut(DrawnView)>,
+}
+
+/// Nothing: casters may be any distance away, and there are no maps.
+impl Default for OwnCasters<'_> {
+    fn default() -> Self {
+        Self {
+            near: 0.1,
+            maps: &[],
+            draw: None,
+        }
+    }
+}
+
 /// A frame of meshes that stand in the world as they are.
 fn with_frame<T>(
     light: &AreaLight,
     meshes: usize,
     serial: u64,
-    (near, maps): (f32, &[GivenMap]),
+    own: OwnCasters,
     work: impl FnOnce(&mut FrameInput) -> T,
 ) -> T {
     let transform = [
@@ -200,7 +216,7 @@ fn with_frame<T>(
         [0.0, 0.0, 1.0, 0.0],
     ];
     let mut instances = (0..meshes).map(|mesh| MeshInstance { mesh, transform });
-    let mut maps = maps.iter().copied();
+    let mut maps = own.maps.iter().copied();
     work(&mut FrameInput {
         serial,
         slot: 0,
@@ -211,9 +227,9 @@ fn with_frame<T>(
         depth_empty: 0.0,
         background: BACKGROUND,
         instances: &mut instances,
-        near,
+        near: own.near,
         maps: &mut maps,
-        draw: None,
+        draw: own.draw.map(|draw| draw as &mut dyn FnMut(DrawnView)),
     })
 }
 
@@ -240,9 +256,19 @@ fn exported(expected: &[f32]) -> Vec<f32> {
     expected.iter().map(of).collect()
 }
 
-/// An effect that is prepared for one slot of images.
+/// An effect that is prepared for one slot of images, of which the surface is one of positions.
 fn prepared(host: &Host, frame: HostFrame, slot: &SlotImages, meshes: &[Mesh]) -> Effect {
-    let (gpu, surface) = (host.adopted(), Surface::Positions);
+    prepared_for(host, frame, Surface::Positions, slot, meshes)
+}
+
+fn prepared_for(
+    host: &Host,
+    frame: HostFrame,
+    surface: Surface,
+    slot: &SlotImages,
+    meshes: &[Mesh],
+) -> Effect {
+    let gpu = host.adopted();
     let mut effect = Effect::new(&gpu, frame, surface, DEFAULT_COSTS).expect("an effect");
     // SAFETY: all is of this device, as described, and outlives the effect.
     unsafe { effect.prepare(std::slice::from_ref(slot), meshes) }.expect("prepared");
@@ -257,7 +283,7 @@ fn check_meshes(host: &mut Host, stage: &Stage) {
     let meshes = stage.meshes(host);
     let mut effect = prepared(host, stage.frame(Casters::Gathered), &slot, &meshes);
     for serial in 1..=2 {
-        let allocations = with_frame(&stage.light(), 3, serial, NO_MAPS, |frame| {
+        let allocations = with_frame(&stage.light(), 3, serial, OwnCasters::default(), |frame| {
             record(host, &mut effect, frame)
         });
         assert_eq!(allocations, 0, "recording takes no memory");
@@ -275,13 +301,32 @@ fn check_meshes(host: &mut Host, stage: &Stage) {
 fn effects_give_what_the_renderer_gives() {
     with_host(|host| {
         let gpu = host.gpu.clone();
-        // Wide enough to see past the floor, and far enough along it for side faces.
-        let stage = Stage::new(&gpu, settings(1), false, 100.0);
+        let stage = Stage::new(&gpu, settings(1), |_| {});
         assert!(stage.side_faces);
         check_meshes(host, &stage);
-        check_maps(host, &stage);
-        let stage = Stage::new(&gpu, settings(2), true, 100.0);
+        kinds::check_maps(host, &stage);
+        kinds::check_depths(host, &stage);
+        kinds::check_normals(host, &stage);
+        let round = LightShape::Disc {
+            normal: DVec3::NEG_Y,
+            radius: 0.7,
+        };
+        let stage = Stage::new(&gpu, settings(2), |light| light.shape = round);
         check_meshes(host, &stage);
+        // So near above the plate that its shadow reaches where the side faces look. Maps of the whole region that
+        // casters may be in have larger texels than those that the device fits to casters that it knows.
+        let fine = Settings {
+            map: 512,
+            ..settings(1)
+        };
+        let stage = Stage::new(&gpu, fine, |light| {
+            light.center.y = 1.7;
+            light.shape = LightShape::Rect {
+                u: DVec3::X * 0.2,
+                v: DVec3::Z * 0.2,
+            };
+        });
+        kinds::check_side_faces(host, &stage);
     });
 }
 
@@ -310,32 +355,6 @@ fn clip_from_world(stage: &Stage) -> [[f32; 4]; 4] {
         .to_cols_array_2d()
 }
 
-/// A map that the host has already: the renderer's own.
-fn check_maps(host: &mut Host, stage: &Stage) {
-    let side = stage.shot.settings.map;
-    let texels = bytemuck::cast_slice(&stage.map);
-    let map = host.image(vk::Format::D32_SFLOAT, (side, side), texels);
-    let slot = stage.slot(host, vec![map]);
-    let frame = HostFrame {
-        side_faces: false,
-        ..stage.frame(Casters::Maps)
-    };
-    let mut effect = prepared(host, frame, &slot, &[]);
-    let given = [GivenMap {
-        clip_from_world: clip_from_world(stage),
-        depth_empty: 0.0,
-    }];
-    let maps = (stage.fit.near, given.as_slice());
-    let allocations = with_frame(&stage.light(), 0, 1, maps, |frame| {
-        record(host, &mut effect, frame)
-    });
-    assert_eq!(allocations, 0);
-    let (found, expected) = (visibility(host, &slot), exported(&stage.expected));
-    // The projection goes through a matrix of f32, whose rounding moves the map by some 1e-5 of a texel; measured 0.
-    let largest = gpu::largest_difference(&found, &expected);
-    assert!(largest < 1e-4, "{largest}");
-}
-
 /// What earlier frames use stays until it is collected, and serials do not go down.
 fn check_collecting(
     host: &mut Host,
@@ -358,11 +377,17 @@ fn check_collecting(
     prepare(effect);
     assert_eq!(effect.memory_bytes(), once, "no frame has used the last");
     let refused = |effect: &mut Effect, meshes, serial| {
-        with_frame(&stage.light(), meshes, serial, NO_MAPS, |frame| {
-            // SAFETY: nothing is recorded.
-            let refused = unsafe { effect.record(host.commands, frame) };
-            refused.expect_err("it makes no sense").to_string()
-        })
+        with_frame(
+            &stage.light(),
+            meshes,
+            serial,
+            OwnCasters::default(),
+            |frame| {
+                // SAFETY: nothing is recorded.
+                let refused = unsafe { effect.record(host.commands, frame) };
+                refused.expect_err("it makes no sense").to_string()
+            },
+        )
     };
     assert!(refused(effect, 3, 1).contains("do not go down"));
     assert!(refused(effect, 4, 6).contains("no mesh 3"));

@@ -228,3 +228,44 @@ fn memory_does_not_depend_on_the_split() {
         }
     });
 }
+
+/// What n views hide, here 256 parts seen in two directions each, adds up in f32, one view after the other. Each sum
+/// rounds by a share of 2^-24 at most, so that n - 1 of them are within (n - 1) · 2^-24 of the sum in f64.
+#[test]
+fn many_views_add_up() {
+    let mut shot = load("plate", 24, settings(32, 16));
+    shot.settings.packet = (1, 1);
+    with_gpu(|gpu| {
+        let mut renderer = renderer(gpu, &shot);
+        renderer.render().expect("a frame");
+        let image = renderer.visibility(0).expect("visibility");
+        let views = renderer.plan().views().count() as u32;
+        assert!(views >= 256, "{views} views");
+        let mut hidden = vec![0.0f64; image.len()];
+        for view in 0..views {
+            renderer.render_view(view).expect("a view");
+            let found: Vec<f32> = renderer
+                .read_buffer("occlusion", image.len())
+                .expect("what the view hides");
+            for (sum, found) in hidden.iter_mut().zip(found) {
+                *sum += f64::from(found);
+            }
+        }
+        let weights = f64::from(renderer.plan().lights[0].light.weight_sum);
+        let mut largest = 0.0f64;
+        let mut partly = 0;
+        for (value, hidden) in image.iter().zip(hidden) {
+            if hidden > 0.0 {
+                partly += usize::from(*value > 0.0 && *value < 1.0);
+                largest = largest.max((f64::from(*value) - (1.0 - hidden / weights)).abs());
+            }
+        }
+        println!("largest deviation {largest:.1e} of {partly} pixels in penumbrae");
+        assert!(partly > 50, "{partly} pixels in penumbrae");
+        // The bound, and the rounding of the quotient and of the difference.
+        assert!(
+            largest <= f64::from(views + 1) / f64::from(1 << 24),
+            "{largest}"
+        );
+    });
+}

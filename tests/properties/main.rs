@@ -6,6 +6,7 @@ mod closed_form;
 #[path = "../support/gpu.rs"]
 mod support;
 
+mod bias;
 mod ends;
 mod frames;
 mod generated;
