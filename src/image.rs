@@ -16,6 +16,30 @@ pub use png_file::{RgbImage, read_png, write_png};
 
 use crate::{Error, Result};
 
+/// [sample] What readers of image files take by default, all channels together: 1 GiB of f32. Files that claim more are
+/// refused before anything is allocated.
+#[cfg(feature = "cli")]
+pub const MAX_SAMPLES: u64 = 1 << 28;
+
+/// Whether an image of so many samples per pixel may be read, or why not.
+#[cfg(feature = "cli")]
+fn check_samples(
+    size: [u64; 2],
+    channels: u64,
+    max_samples: u64,
+) -> std::result::Result<(), String> {
+    let samples = size[0]
+        .checked_mul(size[1])
+        .and_then(|pixels| pixels.checked_mul(channels));
+    match samples {
+        Some(samples) if samples <= max_samples => Ok(()),
+        _ => Err(format!(
+            "claims to have {}x{} pixels of {channels} channels, more than the limit of {max_samples} samples",
+            size[0], size[1]
+        )),
+    }
+}
+
 /// A single-channel image. What a value means, and that NaN stands for "nothing here", is up to the
 /// channel.
 #[derive(Debug, Clone, PartialEq)]

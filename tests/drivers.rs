@@ -6,7 +6,7 @@ mod program;
 
 use std::process::Command;
 
-use halfshade::image::read_exr;
+use halfshade::image::{MAX_SAMPLES, read_exr};
 use program::{Folder, scenes};
 
 /// [visibility] Drivers place vertices on their grids of 1/256 texel each in their own way, which moves a contour by
@@ -44,7 +44,7 @@ fn visibility(folder: &Folder, scene: &str, environment: &[(&str, Option<&str>)]
         "{environment:?}: {}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let mut channels = read_exr(&file).expect("it was written");
+    let mut channels = read_exr(&file, MAX_SAMPLES).expect("it was written");
     channels.remove(0).1.data
 }
 

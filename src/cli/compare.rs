@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use halfshade::compare::{
     HEATMAP_LEGEND, Metrics, PictureMetrics, compare, compare_pictures, heatmap,
 };
-use halfshade::image::{Plane, check_writable, read_exr, read_png, write_png};
+use halfshade::image::{MAX_SAMPLES, Plane, check_writable, read_exr, read_png, write_png};
 use halfshade::{Error, Result};
 
 use super::print;
@@ -32,6 +32,9 @@ pub struct Args {
     /// The channel to compare [default: Y, or the only one there is]
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
+    /// Most samples of an image, pixels times channels: what claims more is refused before anything is allocated
+    #[arg(long, value_name = "N", default_value_t = MAX_SAMPLES)]
+    max_samples: u64,
 }
 
 /// # Errors
@@ -55,8 +58,12 @@ fn is_png(path: &Path) -> bool {
 }
 
 fn run_planes(args: &Args) -> Result<()> {
-    let image = take_channel(&args.image, read_exr(&args.image)?, args.channel.as_deref())?;
-    let mut channels = read_exr(&args.reference)?;
+    let image = take_channel(
+        &args.image,
+        read_exr(&args.image, args.max_samples)?,
+        args.channel.as_deref(),
+    )?;
+    let mut channels = read_exr(&args.reference, args.max_samples)?;
     let facing = match args.facing {
         true => Some(take_facing(&args.reference, &mut channels)?),
         false => None,
@@ -79,8 +86,8 @@ fn run_pictures(args: &Args) -> Result<()> {
             "--facing and --channel are for .exr images, not for pictures".into(),
         ));
     }
-    let image = read_png(&args.image)?;
-    let (metrics, map) = compare_pictures(&image, &read_png(&args.reference)?)?;
+    let image = read_png(&args.image, args.max_samples)?;
+    let (metrics, map) = compare_pictures(&image, &read_png(&args.reference, args.max_samples)?)?;
     if let Some(path) = &args.heatmap {
         write_png(path, image.width, image.height, &map)?;
     }

@@ -10,11 +10,8 @@ use exr::prelude::{
     ReadLayers, Text, WritableImage, read,
 };
 
-use super::{Plane, write_atomically};
+use super::{Plane, check_samples, write_atomically};
 use crate::{Error, Result};
-
-/// [sample] Files that claim more are refused before anything is allocated: 1 GiB of f32.
-const MAX_SAMPLES: usize = 1 << 28;
 
 /// Writes 32-bit float channels, ZIP-compressed, under the given names.
 ///
@@ -68,17 +65,17 @@ fn encode(channels: &[(&str, &Plane)]) -> Result<Vec<u8>, String> {
 ///
 /// # Errors
 /// When the file is missing, is not an OpenEXR image, is damaged, has deep data, or claims more than
-/// 2²⁸ samples.
-pub fn read_exr(path: &Path) -> Result<Vec<(String, Plane)>> {
+/// `max_samples` in all.
+pub fn read_exr(path: &Path, max_samples: u64) -> Result<Vec<(String, Plane)>> {
     let file = File::open(path).map_err(|source| Error::io(path, source))?;
     // The decoder is written not to panic; should a damaged file prove otherwise, it ends here.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode(file)));
+    let decoded = catch_unwind(AssertUnwindSafe(|| decode(file, max_samples)));
     decoded
         .unwrap_or_else(|_| Err("is damaged in a way that its decoder cannot handle".into()))
         .map_err(|message| Error::parse(path, message))
 }
 
-fn decode(file: File) -> Result<Vec<(String, Plane)>, String> {
+fn decode(file: File, max_samples: u64) -> Result<Vec<(String, Plane)>, String> {
     let describe = |error: exr::error::Error| match error {
         exr::error::Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             "is cut short".to_string()
@@ -86,12 +83,12 @@ fn decode(file: File) -> Result<Vec<(String, Plane)>, String> {
         error => format!("is not a readable OpenEXR image ({error})"),
     };
     let chunks = exr::block::read(BufReader::new(file), false).map_err(describe)?;
-    let samples = chunks.headers().iter().try_fold(0usize, |sum, header| {
-        let pixels = header.layer_size.0.checked_mul(header.layer_size.1)?;
-        sum.checked_add(pixels.checked_mul(header.channels.list.len())?)
-    });
-    if samples.is_none_or(|samples| samples > MAX_SAMPLES) {
-        return Err("claims to be larger than any image that this program handles".into());
+    let mut left = max_samples;
+    for header in chunks.headers() {
+        let [width, height] = [header.layer_size.0 as u64, header.layer_size.1 as u64];
+        let channels = header.channels.list.len() as u64;
+        check_samples([width, height], channels, left)?;
+        left -= width * height * channels;
     }
     // One thread: these images are small, and a panic on another thread could not be caught.
     let image = read()
@@ -129,6 +126,7 @@ fn planes_of(layer: Layer<AnyChannels<FlatSamples>>) -> Vec<Result<(String, Plan
 
 #[cfg(test)]
 mod tests {
+    use super::super::MAX_SAMPLES;
     use super::*;
 
     fn ramp(width: usize, height: usize) -> Plane {
@@ -144,7 +142,7 @@ mod tests {
         y.data[5] = f32::NAN;
         let facing = ramp(37, 19);
         write_exr(&path, &[("facing", &facing), ("Y", &y)]).unwrap();
-        let channels = read_exr(&path).unwrap();
+        let channels = read_exr(&path, MAX_SAMPLES).unwrap();
         assert_eq!(channels.len(), 2);
         // By bits, since NaN is not equal to itself.
         let bits = |plane: &Plane| plane.data.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -168,7 +166,7 @@ mod tests {
         ];
         let image = Image::from_channels((2, 2), AnyChannels::sort(list.into()));
         image.write().to_file(&path).unwrap();
-        let channels = read_exr(&path).unwrap();
+        let channels = read_exr(&path, MAX_SAMPLES).unwrap();
         let data = |name| &channels.iter().find(|(n, _)| n == name).unwrap().1.data;
         assert_eq!(data("Y"), &[0.0, 0.25, 0.5, 1.0]);
         assert_eq!(data("count"), &[0.0, 1.0, 2.0, 70000.0]);
@@ -197,7 +195,7 @@ mod tests {
         let path = folder.path().join("a.exr");
         for length in (0..good.len()).step_by(7) {
             std::fs::write(&path, &good[..length]).unwrap();
-            read_exr(&path).unwrap_err();
+            read_exr(&path, MAX_SAMPLES).unwrap_err();
         }
         let mut state = 1u64;
         for _ in 0..2000 {
@@ -210,7 +208,7 @@ mod tests {
             std::fs::write(&path, &bad).unwrap();
             // A change may go unnoticed (a name, a comment); what counts is that it comes back.
             let file = File::open(&path).unwrap();
-            let _ = decode(file);
+            let _ = decode(file, MAX_SAMPLES);
         }
     }
 }

@@ -5,13 +5,12 @@ use std::io::BufReader;
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
+use image::{
+    DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader,
+};
 
-use super::write_atomically;
+use super::{check_samples, write_atomically};
 use crate::{Error, Result};
-
-/// [pixel] Wider or higher pictures are refused before anything is allocated.
-const MAX_SIDE: u32 = 1 << 15;
 
 /// An 8-bit sRGB picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -65,16 +64,19 @@ pub fn write_png(path: &Path, width: u32, height: u32, rgb8: &[u8]) -> Result<()
 /// Reads a picture; an alpha channel is dropped, grey becomes RGB, 16 bits become 8.
 ///
 /// # Errors
-/// When the file is missing, is not a PNG, is damaged, or is wider or higher than 32768 pixels.
-pub fn read_png(path: &Path) -> Result<RgbImage> {
+/// When the file is missing, is not a PNG, is damaged, or claims more than `max_samples`.
+pub fn read_png(path: &Path, max_samples: u64) -> Result<RgbImage> {
     let file = File::open(path).map_err(|source| Error::io(path, source))?;
+    let unreadable = |error| Error::parse(path, format!("is not a readable PNG ({error})"));
     let mut reader = ImageReader::with_format(BufReader::new(file), ImageFormat::Png);
-    let mut limits = Limits::default();
-    (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIDE), Some(MAX_SIDE));
-    reader.limits(limits);
-    let decoded = reader.decode();
-    let picture =
-        decoded.map_err(|error| Error::parse(path, format!("is not a readable PNG ({error})")))?;
+    // The limit is that on samples.
+    reader.no_limits();
+    let decoder = reader.into_decoder().map_err(unreadable)?;
+    let (width, height) = decoder.dimensions();
+    let channels = decoder.color_type().channel_count().max(3);
+    check_samples([width.into(), height.into()], channels.into(), max_samples)
+        .map_err(|message| Error::parse(path, message))?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     let picture = picture.into_rgb8();
     let (width, height) = picture.dimensions();
     let rgb8 = picture.into_raw();
@@ -87,6 +89,7 @@ pub fn read_png(path: &Path) -> Result<RgbImage> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::MAX_SAMPLES;
     use super::*;
 
     #[test]
@@ -95,7 +98,7 @@ mod tests {
         let path = folder.path().join("a.png");
         let rgb8: Vec<u8> = (0..5 * 3 * 3).map(|i| i as u8 * 5).collect();
         write_png(&path, 5, 3, &rgb8).unwrap();
-        let read = read_png(&path).unwrap();
+        let read = read_png(&path, MAX_SAMPLES).unwrap();
         assert_eq!((read.width, read.height, read.rgb8), (5, 3, rgb8));
     }
 
@@ -105,10 +108,10 @@ mod tests {
         let path = folder.path().join("a.png");
         assert!(write_png(&path, 2, 2, &[0; 11]).is_err());
         assert!(write_png(&path, 0, 0, &[]).is_err());
-        assert!(read_png(&path).is_err());
+        assert!(read_png(&path, MAX_SAMPLES).is_err());
         std::fs::write(&path, "not a picture").unwrap();
         assert!(
-            read_png(&path)
+            read_png(&path, MAX_SAMPLES)
                 .unwrap_err()
                 .to_string()
                 .contains("not a readable PNG")

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use crate::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
-use crate::image::{Plane, read_exr, write_exr};
+use crate::image::{MAX_SAMPLES, Plane, read_exr, write_exr};
 use crate::scene::Texture;
 use crate::shot::{Overrides, Shot};
 use crate::{Error, Result};
@@ -132,7 +132,7 @@ fn cached_truth(
 
 /// None: it is not there, or is not what was once written, and is traced anew.
 fn stored_truth(file: &Path, shot: &Shot) -> Option<ReferenceImage> {
-    let mut channels = read_exr(file).ok()?;
+    let mut channels = read_exr(file, MAX_SAMPLES).ok()?;
     let mut take = |wanted: &str| {
         let index = channels.iter().position(|(name, _)| name == wanted)?;
         let plane = channels.remove(index).1;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-use halfshade::image::read_exr;
+use halfshade::image::{MAX_SAMPLES, read_exr};
 use serde_json::json;
 
 use super::build::{Workshop, built, done, root};
@@ -181,7 +181,7 @@ fn the_program_and_c_give_the_same_bits() {
             .env("XDG_DATA_HOME", "/nonexistent"),
     );
     done(compile(&workshop, "same_shot.c").args([&shot, &raw]));
-    let planes = read_exr(&exr).expect("the program has written it");
+    let planes = read_exr(&exr, MAX_SAMPLES).expect("the program has written it");
     let expected: Vec<u8> = planes[0]
         .1
         .data

@@ -1,7 +1,7 @@
 //! What works, and what it leaves.
 
 use super::program::{Folder, plate, scenes};
-use halfshade::image::{read_exr, read_png};
+use halfshade::image::{MAX_SAMPLES, read_exr, read_png};
 use serde_json::{Value, json};
 
 /// Cheap settings: a single view with a small map.
@@ -43,9 +43,9 @@ fn a_render_writes_picture_visibility_and_stats() {
     );
     assert_eq!(folder.names(), ["a.exr", "a.json", "a.png", "shot.json"]);
 
-    let picture = read_png(&folder.path("a.png")).unwrap();
+    let picture = read_png(&folder.path("a.png"), MAX_SAMPLES).unwrap();
     assert_eq!((picture.width, picture.height), (24, 16));
-    let channels = read_exr(&folder.path("a.exr")).unwrap();
+    let channels = read_exr(&folder.path("a.exr"), MAX_SAMPLES).unwrap();
     assert_eq!(channels.len(), 1);
     let (name, plane) = &channels[0];
     assert_eq!((name.as_str(), plane.width, plane.height), ("Y", 24, 16));
@@ -105,7 +105,7 @@ fn several_lights_have_a_channel_each() {
     shot["lights"].as_array_mut().unwrap().push(point);
     folder.write_shot(&shot);
     folder.does(&quick(&["render", "shot.json", "--visibility", "all.exr"]));
-    let all = read_exr(&folder.path("all.exr")).unwrap();
+    let all = read_exr(&folder.path("all.exr"), MAX_SAMPLES).unwrap();
     let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["Y0", "Y1"]);
     let hard = &all[1].1.data;
@@ -120,7 +120,7 @@ fn several_lights_have_a_channel_each() {
         "--visibility",
         "one.exr",
     ]));
-    let one = read_exr(&folder.path("one.exr")).unwrap();
+    let one = read_exr(&folder.path("one.exr"), MAX_SAMPLES).unwrap();
     assert_eq!((one.len(), one[0].0.as_str()), (1, "Y"));
     let bits = |data: &[f32]| data.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&one[0].1.data), bits(hard));
@@ -183,9 +183,11 @@ fn a_reference_can_be_compared_with_itself() {
         out.starts_with("r.exr: 24×16 pixels, 16 rays each"),
         "{out}"
     );
-    let mut names: Vec<_> = (read_exr(&folder.path("r.exr")).unwrap().into_iter())
-        .map(|(name, _)| name)
-        .collect();
+    let mut names: Vec<_> = (read_exr(&folder.path("r.exr"), MAX_SAMPLES)
+        .unwrap()
+        .into_iter())
+    .map(|(name, _)| name)
+    .collect();
     names.sort();
     assert_eq!(names, ["Y", "facing", "stderr"]);
     let table = folder.does(&[
@@ -197,7 +199,10 @@ fn a_reference_can_be_compared_with_itself() {
         "h.png",
     ]);
     assert!(table.contains("mean absolute error (MAE)"), "{table}");
-    assert_eq!(read_png(&folder.path("h.png")).unwrap().width, 24);
+    assert_eq!(
+        read_png(&folder.path("h.png"), MAX_SAMPLES).unwrap().width,
+        24
+    );
     let json = folder.does(&["compare", "r.exr", "r.exr", "--json"]);
     let metrics: Value = serde_json::from_str(&json).unwrap();
     assert_eq!(

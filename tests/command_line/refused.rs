@@ -1,5 +1,7 @@
 //! What is refused: with one sentence, and without a file.
 
+use halfshade::image::{Plane, write_exr, write_png};
+
 use super::program::{Folder, plate, scenes};
 use serde_json::{Value, json};
 
@@ -190,4 +192,24 @@ fn comparisons_that_make_no_sense() {
         &["compare", "a.exr", "a.exr", "--heatmap", "h.png"],
         &["a.exr"],
     );
+}
+
+#[test]
+fn images_beyond_a_limit() {
+    let folder = Folder::new();
+    let plane = Plane::new(4, 3, vec![0.5; 12]).unwrap();
+    write_exr(&folder.path("a.exr"), &[("Y", &plane)]).unwrap();
+    write_png(&folder.path("a.png"), 4, 3, &[7; 36]).unwrap();
+    for (file, samples) in [("a.exr", 12), ("a.png", 36)] {
+        let compare = |limit: u64| {
+            let limit = limit.to_string();
+            ["compare", file, file, "--max-samples", &limit].map(str::to_owned)
+        };
+        let refused = compare(samples - 1);
+        folder.refuses(
+            &refused.each_ref().map(String::as_str),
+            &[file, "4x3 pixels", "limit"],
+        );
+        folder.does(&compare(samples).each_ref().map(String::as_str));
+    }
 }

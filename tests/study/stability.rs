@@ -20,6 +20,8 @@ const CASES: [&str; 8] = [
 ];
 /// [visibility] Mean error where the plate does not touch the light: what a map of 128 texels knows of its edges.
 const MEAN: f64 = 0.02;
+/// [visibility] As in `tests/passes.rs`: sums of some hundred areas in f32.
+const TWIN: f64 = 1e-4;
 
 #[test]
 fn extreme_cases_stay_finite_and_in_range() {
@@ -41,6 +43,8 @@ fn extreme_cases_stay_finite_and_in_range() {
                 if ours && case.family != "near the light" {
                     assert!(finding.mean < MEAN, "{finding:?}");
                 }
+                assert_eq!(finding.twin.is_some(), ours, "{finding:?}");
+                assert!(finding.twin.is_none_or(|twin| twin < TWIN), "{finding:?}");
                 findings.push(finding);
             }
         }

@@ -17,8 +17,9 @@ use super::super::{on_interrupt, print, progress};
 /// degenerate triangles, closed bodies, odd sizes.
 ///
 /// Prints for each technique and family of cases how many were unsound (not rendered, not finite, beyond [0, 1]), the
-/// largest mean error against rays, speckles (pixels that differ from all neighbours by more than the truth does) and
-/// leaks (pixels with light where there is none).
+/// largest mean error against rays, speckles (pixels that differ from all neighbours by more than the truth does),
+/// leaks (pixels with light where there is none) and, for techniques that integrate contours, the largest deviation
+/// from the f64 twin, which integrates the same maps.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Techniques, separated by commas [default: all]
