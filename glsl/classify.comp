@@ -48,6 +48,13 @@ void include(inout Survey survey, Kernel kernel, Receiver receiver) {
     ivec2 last = unpacked(kernel.last);
     survey.first = min(survey.first, first);
     survey.last = max(survey.last, last);
+    if (survey.count == 0u) survey.packet.origin = receiver.t;
+    precise vec2 way = survey.packet.origin - receiver.t;
+    precise float at_origin = receiver.biased + (receiver.plane.x * way.x + receiver.plane.y * way.y);
+    survey.packet.plane_depths.x = min(survey.packet.plane_depths.x, at_origin);
+    survey.packet.plane_depths.y = max(survey.packet.plane_depths.y, at_origin);
+    survey.packet.planes.xy = min(survey.packet.planes.xy, receiver.plane);
+    survey.packet.planes.zw = max(survey.packet.planes.zw, receiver.plane);
     survey.packet.depth_min = min(survey.packet.depth_min, receiver.biased);
     survey.packet.depth_max = max(survey.packet.depth_max, receiver.biased);
     survey.packet.depth_far = min(survey.packet.depth_far, receiver.d);
@@ -84,7 +91,8 @@ void main() {
     View view = views[push.index];
     Fit fit = fits[push.index];
     Survey survey;
-    survey.packet = Packet(at.y * grid.x + at.x, 0u, 0u, 1e30, 0.0, 1e30, vec4(1e30, 1e30, -1e30, -1e30));
+    survey.packet = Packet(at.y * grid.x + at.x, 0u, 0u, 1e30, 0.0, 1e30, vec4(1e30, 1e30, -1e30, -1e30), vec2(0.0),
+                           vec2(1e30, -1e30), vec4(1e30, 1e30, -1e30, -1e30));
     survey.first = ivec2(1 << 30);
     survey.last = ivec2(-1);
     survey.count = 0u;

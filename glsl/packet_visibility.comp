@@ -49,6 +49,7 @@ uint pixel_index[HELD];
 vec2 held_t[HELD];
 float held_d[HELD];
 float held_biased[HELD];
+vec2 held_plane[HELD];
 vec2 held_ku[HELD];
 vec2 held_kv[HELD];
 vec2 held_b[HELD];
@@ -71,6 +72,7 @@ void hold(View view, Fit fit, uint slot, uint index) {
     held_t[slot] = receiver.t;
     held_d[slot] = receiver.d;
     held_biased[slot] = receiver.biased;
+    held_plane[slot] = receiver.plane;
     if (OBLIQUE) held_ku[slot] = receiver.ku;
     if (OBLIQUE) held_kv[slot] = receiver.kv;
     if (OBLIQUE) held_b[slot] = receiver.b;
@@ -79,8 +81,8 @@ void hold(View view, Fit fit, uint slot, uint index) {
 }
 
 Receiver receiver_of(uint slot) {
-    Receiver receiver = Receiver(held_t[slot], held_d[slot], held_biased[slot], vec2(kappa.x, 0.0), vec2(0.0, kappa.y),
-                                 vec2(0.0));
+    Receiver receiver = Receiver(held_t[slot], held_d[slot], held_biased[slot], held_plane[slot], vec2(kappa.x, 0.0),
+                                 vec2(0.0, kappa.y), vec2(0.0));
     if (OBLIQUE) receiver.ku = held_ku[slot];
     if (OBLIQUE) receiver.kv = held_kv[slot];
     if (OBLIQUE) receiver.b = held_b[slot];
@@ -100,7 +102,39 @@ bool penumbra_pixel(Packet packet, uint i, out uint index) {
 Packet packet_of_pixel(uint index) {
     Kernel kernel = kernels[index];
     Receiver receiver = receiver_of(0u);
-    return Packet(index, kernel.first, kernel.last, receiver.biased, receiver.biased, receiver.d, receiver.t.xyxy);
+    return Packet(index, kernel.first, kernel.last, receiver.biased, receiver.biased, receiver.d, receiver.t.xyxy,
+                  receiver.t, vec2(receiver.biased), receiver.plane.xyxy);
+}
+
+// Bounds of the packet's pixels' limits (`limit_at`) at the samples of a box: a lower one and an upper one.
+vec2 limits_in(Packet packet, vec2 lower, vec2 upper) {
+    vec2 from = lower - packet.origin;
+    vec2 to = upper - packet.origin;
+    vec4 low = vec4(packet.planes.xy * from, packet.planes.xy * to);
+    vec4 high = vec4(packet.planes.zw * from, packet.planes.zw * to);
+    vec4 least = min(low, high);
+    vec4 most = max(low, high);
+    vec2 fall = min(least.xy, least.zw);
+    vec2 rise = max(most.xy, most.zw);
+    // For the rounding of these sums and of those in `limit_at`.
+    vec2 size = max(abs(fall), abs(rise));
+    vec2 depths = abs(packet.plane_depths);
+    float rounding = 1e-6 * (max(depths.x, depths.y) + size.x + size.y);
+    return max(vec2(packet.plane_depths.x + fall.x + fall.y - rounding, packet.plane_depths.y + rise.x + rise.y + rounding),
+               vec2(packet.depth_min, packet.depth_max));
+}
+
+// The corners of a cell that occlude, if the packet's pixels agree about them.
+uint mask_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
+    vec2 at = vec2(cell);
+    vec2 a = limits_in(packet, at, at);
+    vec2 b = limits_in(packet, at + vec2(1.0, 0.0), at + vec2(1.0, 0.0));
+    vec2 c = limits_in(packet, at + vec2(1.0, 1.0), at + vec2(1.0, 1.0));
+    vec2 d = limits_in(packet, at + vec2(0.0, 1.0), at + vec2(0.0, 1.0));
+    uint mask = mask_of(depths, vec4(a.y, b.y, c.y, d.y));
+    agreed = PIXELWISE || mask == mask_of(depths, vec4(a.x, b.x, c.x, d.x));
+    if (PIXELWISE) mask = mask_of(depths, limits_of(receiver_of(0u), cell));
+    return mask;
 }
 
 // As `misses_light`, for one receiver and a map that is not parallel to the light: through the middle and
@@ -147,7 +181,8 @@ bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
         ++turns;
         vec2 bounds = mssm_fetch(mssm, walk.node, walk.level, size);
         bool inside = all(lessThanEqual(walk.node, last));
-        bool open = inside && bounds.y > packet.depth_min && bounds.x <= packet.depth_max
+        vec2 limits = limits_in(packet, vec2(walk.node), vec2(walk.node + (1 << walk.level)));
+        bool open = inside && bounds.y > limits.x && bounds.x <= limits.y
                  && !(FOOTPRINT && misses_light(view, packet, walk.node, 1 << walk.level, bounds.y));
         nodes_visited += uint(inside);
         found = open && walk.level == 0;
@@ -180,8 +215,10 @@ bool next_edge(View view, Packet packet, inout Cursor cursor) {
     bool found = cursor.more;
     if (!cursor.more) found = next_cell(view, packet, cursor.walk, cursor.cell);
     cursor.depths = samples_of(shadow_map, cursor.cell);
-    cursor.mask = found ? mask_of(cursor.depths, packet.depth_max) : 0u;
-    cursor.agreed = PIXELWISE || !found || cursor.mask == mask_of(cursor.depths, packet.depth_min);
+    bool agreed;
+    uint mask = mask_in(packet, cursor.cell, cursor.depths, agreed);
+    cursor.mask = found ? mask : 0u;
+    cursor.agreed = agreed || !found;
     uint segments = cursor.agreed ? segment_count(cursor.mask) : 0u;
     cursor.more = cursor.segment + 1u < segments;
     samples_read += found ? 4u : 0u;
@@ -240,7 +277,7 @@ void integrate_apart(View view, Cursor cursor) {
         more = false;
         for (uint slot = 0u; slot < held_end; ++slot) {
             Receiver receiver = receiver_of(slot);
-            uint mask = mask_of(cursor.depths, receiver.biased);
+            uint mask = mask_of(cursor.depths, limits_of(receiver, cursor.cell));
             beyond[slot] += segment_beyond(view, receiver, cursor.cell, cursor.depths, mask, segment);
             edges_extracted += uint(is_held[slot] && segment < segment_count(mask));
             more = more || segment + 1u < segment_count(mask);
@@ -257,7 +294,8 @@ bool traverse(View view, Fit fit, Packet packet, inout Walk walk) {
     Edge batch[BATCH];
     [[unroll]] for (uint i = 0u; i < BATCH; ++i) batch[i] = Edge(vec3(0.0), vec3(0.0));
     while (!at_end(cursor) && (cursor.agreed || !REPROCESS) && (cursor.more || !out_of_turns(0u))) {
-        ++steps;
+        // Lanes share the driver's count, the turns included for which others went on and they waited.
+        steps = subgroupMax(steps) + 1u;
         if (PIXELWISE) {
             integrate_next(view, packet, cursor);
         } else {

@@ -302,6 +302,12 @@ shared! {
         depth_far: float,
         /// [texel] Box of its penumbra pixels' t_p: x and y of the lower, then the upper corner.
         centers: vec4,
+        /// [texel] Where `plane_depths` holds.
+        origin: vec2,
+        /// Range of the biased depths of their planes at the origin.
+        plane_depths: vec2,
+        /// [per texel] Range of their planes' changes of depth: the least in x and y, then the largest.
+        planes: vec4,
     }
 
     /// Where a list's entry goes on in the next round.

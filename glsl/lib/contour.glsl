@@ -6,9 +6,9 @@
 const uint SEGMENTS[16] = uint[16](
     0u, 49u, 5u, 53u, 25u, 434u, 9u, 57u, 45u, 33u, 710u, 37u, 29u, 17u, 13u, 0u);
 
-uint mask_of(vec4 depths, float limit) {
-    return uint(depths.x > limit) | uint(depths.y > limit) << 1 | uint(depths.z > limit) << 2
-         | uint(depths.w > limit) << 3;
+uint mask_of(vec4 depths, vec4 limits) {
+    return uint(depths.x > limits.x) | uint(depths.y > limits.y) << 1 | uint(depths.z > limits.z) << 2
+         | uint(depths.w > limits.w) << 3;
 }
 
 uint segment_count(uint mask) { return SEGMENTS[mask] & 3u; }

@@ -6,8 +6,10 @@ struct Receiver {
     vec2 t;
     // Depth near / z.
     float d;
-    // Depth moved towards the light by the bias: samples with a larger depth occlude.
+    // Depth moved towards the light by the bias: samples with a larger depth may occlude.
     float biased;
+    // [per texel] By how much the depth of the receiver's own plane changes; see `limit_at`.
+    vec2 plane;
     // Back-projection q = (ku · Δt, kv · Δt) / (Δd + b · Δt), with Δt = t − t_p and Δd = d − d_p.
     vec2 ku;
     vec2 kv;
@@ -51,6 +53,9 @@ bool in_view(View view, vec3 to_point, vec3 normal) {
     return sum > dot_exact(normal, to_point);
 }
 
+// [per texel] A sample's depth is at most 1: what changes by more is beyond all samples one texel on.
+const float PLANE_MAX = 2.0;
+
 Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     Receiver receiver;
     precise vec3 p = to_face(view, to_point);
@@ -62,7 +67,8 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     precise float d = fit.near * inverse_z;
 
     vec3 n = to_face(view, normal);
-    precise vec2 slope = abs(n.xy) * fit.near / (fit.focal * max(abs(dot_exact(n, p)), 1e-30));
+    precise float height = dot_exact(n, p);
+    precise vec2 slope = abs(n.xy) * fit.near / (fit.focal * max(abs(height), 1e-30));
     precise float slope_bias = min((slope.x + slope.y) * view.bias, BIAS_SLOPE_MAX * d);
     precise vec3 magnitude = abs(to_point) + abs(view.center);
     precise float rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * inverse_z);
@@ -71,6 +77,9 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     receiver.t = t;
     receiver.d = d;
     receiver.biased = biased;
+    // Where the sub-light's centre is behind the plane, the plane bounds nothing.
+    precise vec2 plane = n.xy * fit.near / (fit.focal * min(height, -1e-30));
+    receiver.plane = height < 0.0 ? clamp(plane, -PLANE_MAX, PLANE_MAX) : vec2(0.0);
     precise vec2 ku = vec2(fit.near / (fit.focal.x * view.half_size.x), 0.0);
     precise vec2 kv = vec2(0.0, fit.near / (fit.focal.y * view.half_size.y));
     precise vec2 b = vec2(0.0);
@@ -88,6 +97,28 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     receiver.kv = kv;
     receiver.b = b;
     return receiver;
+}
+
+// The depth beyond which a sample occludes: nearer to the light than the receiver, and above its plane. Without the plane,
+// where a tilted surface comes nearer to the light it would be an occluder itself, and the contour of what stands before
+// it would be lost. (DEVIATION [GBP07, Yang09]: they compare with the receiver's depth alone.)
+float limit_at(Receiver receiver, vec2 texel) {
+    precise vec2 way = texel - receiver.t;
+    precise float rise = receiver.plane.x * way.x + receiver.plane.y * way.y;
+    precise float limit = receiver.biased + max(rise, 0.0);
+    return limit;
+}
+
+// The limits at a cell's corners, counter-clockwise from (0, 0).
+vec4 limits_of(Receiver receiver, ivec2 cell) {
+    vec2 at = vec2(cell);
+    return vec4(limit_at(receiver, at), limit_at(receiver, at + vec2(1.0, 0.0)), limit_at(receiver, at + vec2(1.0, 1.0)),
+                limit_at(receiver, at + vec2(0.0, 1.0)));
+}
+
+// The highest limit at samples first … last.
+float highest_limit(Receiver receiver, ivec2 first, ivec2 last) {
+    return limit_at(receiver, mix(vec2(first), vec2(last), greaterThan(receiver.plane, vec2(0.0))));
 }
 
 // Where the line from the receiver through the occluder point (t_p + dt, d) meets the light plane, as

@@ -56,7 +56,7 @@ float occluded_share(View view, Receiver receiver, texture2D shadow_map, float b
     bool inside = false;
     if (all(lessThan(uvec2(cell), uvec2(view.map_size - 1u)))) {
         vec4 depths = samples_of(shadow_map, cell);
-        inside = inside_contour(cell, depths, mask_of(depths, receiver.biased), receiver.t);
+        inside = inside_contour(cell, depths, mask_of(depths, limits_of(receiver, cell)), receiver.t);
     }
     return clamp(((inside ? view.area : 0.0) - beyond) / view.area, 0.0, 1.0);
 }

@@ -96,7 +96,7 @@ bool find_quad(Listed listed, uint layer, inout Scan scan) {
     uint turns = 0u;
     while (!found && !at_end(scan) && !out_of_turns(turns)) {
         ++turns;
-        found = mask_of(depths_of(layer, scan.at), listed.receiver.biased) == 15u;
+        found = mask_of(depths_of(layer, scan.at), vec4(listed.receiver.biased)) == 15u;
         if (!found) advance(scan);
     }
     nodes_visited += turns;

@@ -57,21 +57,27 @@ pub fn classify(index: u32, pixels: &[(Kernel, Receiver)], costs: &Costs) -> Opt
         pixel_cost: 0.0,
     };
     let (mut lower, mut upper) = (Vec2::splat(1e30), Vec2::splat(-1e30));
+    let (mut planes, mut plane_depths) = ((lower, upper), (1e30f32, -1e30f32));
+    let origin = pixels.first()?.1.t;
     for (kernel, receiver) in pixels {
         packet.depth_min = packet.depth_min.min(receiver.biased);
         packet.depth_max = packet.depth_max.max(receiver.biased);
         packet.depth_far = packet.depth_far.min(receiver.d);
+        let way = origin - receiver.t;
+        let at_origin = receiver.biased + (receiver.plane.x * way.x + receiver.plane.y * way.y);
+        plane_depths = (plane_depths.0.min(at_origin), plane_depths.1.max(at_origin));
+        planes = (planes.0.min(receiver.plane), planes.1.max(receiver.plane));
         lower = lower.min(receiver.t);
         upper = upper.max(receiver.t);
         survey.include(kernel, costs);
-    }
-    if survey.count == 0 {
-        return None;
     }
     let cell = |[x, y]: [i32; 2]| x as u32 | (y as u32) << 16;
     packet.first = cell(survey.first);
     packet.last = cell(survey.last);
     packet.centers = Vec4::new(lower.x, lower.y, upper.x, upper.y).into();
+    packet.origin = origin.into();
+    packet.plane_depths = plane_depths.into();
+    packet.planes = [planes.0.x, planes.0.y, planes.1.x, planes.1.y];
     let decision = survey.decide(&packet, costs);
     Some(Classified { packet, decision })
 }

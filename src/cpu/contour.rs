@@ -3,6 +3,8 @@
 
 use glam::DVec2;
 
+use super::depth::Limit;
+
 /// A map of `size` × `size` depths, row by row.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowMap<'a> {
@@ -28,8 +30,12 @@ impl ShadowMap<'_> {
     }
 
     /// The contour's segments in a cell round the samples nearer to the light than `limit`.
-    pub fn segments(&self, cell: [i32; 2], limit: f32) -> impl Iterator<Item = Segment> + use<> {
-        segments_of(self.corners(cell), cell, limit)
+    pub fn segments(&self, cell: [i32; 2], limit: &Limit) -> impl Iterator<Item = Segment> + use<> {
+        segments_of(
+            self.corners(cell),
+            cell,
+            occluding(self.corners(cell), cell, limit),
+        )
     }
 
     /// The contour's segments in the cells first … last, inclusive, one after the other.
@@ -37,7 +43,7 @@ impl ShadowMap<'_> {
         &self,
         first: [i32; 2],
         last: [i32; 2],
-        limit: f32,
+        limit: &Limit,
         mut with: impl FnMut(Segment),
     ) {
         for y in first[1]..=last[1] {
@@ -48,31 +54,43 @@ impl ShadowMap<'_> {
             let cells = row(y).windows(2).zip(row(y + 1).windows(2));
             for (x, (below, above)) in (first[0]..).zip(cells) {
                 let depths = [below[0], below[1], above[1], above[0]];
-                let occludes = depths[0] > limit;
-                if depths.iter().all(|&d| (d > limit) == occludes) {
+                // Most cells have nothing that could occlude.
+                if depths.iter().all(|&depth| depth <= limit.least) {
                     continue;
                 }
-                segments_of(depths, [x, y], limit).for_each(&mut with);
+                let occludes = occluding(depths, [x, y], limit);
+                if occludes.iter().all(|&occludes| occludes) {
+                    continue;
+                }
+                segments_of(depths, [x, y], occludes).for_each(&mut with);
             }
         }
     }
 
     /// Whether the light's centre is hidden: the point `t` lies inside the contour (trap 1).
-    pub fn hides(&self, t: DVec2, limit: f32) -> bool {
+    pub fn hides(&self, t: DVec2, limit: &Limit) -> bool {
         let cell = [t.x.floor() as i32, t.y.floor() as i32];
         if cell.iter().any(|&i| i < 0 || i > self.size - 2) {
             return false;
         }
-        self.corners(cell).iter().all(|&d| d > limit)
+        occluding(self.corners(cell), cell, limit) == [true; 4]
             || self
                 .segments(cell, limit)
                 .any(|segment| segment.side_of(t) > 0.0)
     }
 }
 
-/// The contour's segments in a cell with these depths at its corners.
-fn segments_of(depths: [f32; 4], cell: [i32; 2], limit: f32) -> impl Iterator<Item = Segment> {
-    let occludes = depths.map(|d| d > limit);
+/// Which corners of a cell occlude.
+fn occluding(depths: [f32; 4], cell: [i32; 2], limit: &Limit) -> [bool; 4] {
+    std::array::from_fn(|i| depths[i] > limit.at([0, 1].map(|axis| cell[axis] + CORNERS[i][axis])))
+}
+
+/// The contour's segments in a cell with these depths at its corners, of which some occlude.
+fn segments_of(
+    depths: [f32; 4],
+    cell: [i32; 2],
+    occludes: [bool; 4],
+) -> impl Iterator<Item = Segment> {
     let starts = (0..4).filter(move |&e| occludes[e] && !occludes[(e + 1) % 4]);
     starts.map(move |start| {
         // Round the occluders that hang together, clockwise, to the first of them: so the saddles keep
@@ -126,7 +144,7 @@ mod tests {
                 depths: &depths,
             };
             let segments: Vec<Segment> = (0..16)
-                .flat_map(|i| map.segments([i % 4, i / 4], 0.5))
+                .flat_map(|i| map.segments([i % 4, i / 4], &Limit::flat(0.5)))
                 .collect();
             for segment in &segments {
                 let next = segments
@@ -154,8 +172,8 @@ mod tests {
                 size: 2,
                 depths: &depths,
             };
-            assert_eq!(map.segments([0, 0], 0.5).count(), 2);
-            assert!(!map.hides(DVec2::splat(0.5), 0.5));
+            assert_eq!(map.segments([0, 0], &Limit::flat(0.5)).count(), 2);
+            assert!(!map.hides(DVec2::splat(0.5), &Limit::flat(0.5)));
         }
     }
 }

@@ -13,12 +13,67 @@ pub struct Receiver {
     pub t: Vec2,
     /// Depth near / z.
     pub d: f32,
-    /// Depth moved towards the light by the bias: samples with a larger depth occlude.
+    /// Depth moved towards the light by the bias: samples with a larger depth may occlude.
     pub biased: f32,
+    /// [per texel] By how much the depth of the receiver's own plane changes; see [`Limit`].
+    pub plane: Vec2,
     pub ku: Vec2,
     pub kv: Vec2,
     pub b: Vec2,
 }
+
+/// The depths beyond which samples occlude: nearer to the light than the receiver, and above its plane.
+#[derive(Debug, Clone, Copy)]
+pub struct Limit {
+    /// The least, at and below the receiver's own height.
+    pub least: f32,
+    /// [per texel]
+    pub plane: Vec2,
+    /// [texel] Where the plane has the least depth.
+    pub t: Vec2,
+}
+
+impl Limit {
+    /// The same everywhere.
+    pub fn flat(depth: f32) -> Self {
+        Self {
+            least: depth,
+            plane: Vec2::ZERO,
+            t: Vec2::ZERO,
+        }
+    }
+
+    /// At a sample.
+    pub fn at(&self, [x, y]: [i32; 2]) -> f32 {
+        let way = Vec2::new(x as f32, y as f32) - self.t;
+        self.least + (self.plane.x * way.x + self.plane.y * way.y).max(0.0)
+    }
+
+    /// The highest at samples first … last.
+    pub fn highest(&self, first: [i32; 2], last: [i32; 2]) -> f32 {
+        let rising = self.plane.cmpgt(Vec2::ZERO);
+        self.at([0, 1].map(|axis| {
+            if rising.test(axis) {
+                last[axis]
+            } else {
+                first[axis]
+            }
+        }))
+    }
+}
+
+impl Receiver {
+    pub fn limit(&self) -> Limit {
+        Limit {
+            least: self.biased,
+            plane: self.plane,
+            t: self.t,
+        }
+    }
+}
+
+/// [per texel] As in the shader: beyond all samples one texel on.
+const PLANE_MAX: f32 = 2.0;
 
 fn to_face(view: &View, world: Vec3) -> Vec3 {
     Vec3::new(
@@ -83,7 +138,9 @@ pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Ve
     let d = fit.near * inverse_z;
 
     let n = to_face(view, normal);
-    let slope = n.truncate().abs() * fit.near / (focal * n.dot(p).abs().max(1e-30));
+    let height = n.dot(p);
+    let slope = n.truncate().abs() * fit.near / (focal * height.abs().max(1e-30));
+    let plane = n.truncate() * fit.near / (focal * height.min(-1e-30));
     let slope_bias = ((slope.x + slope.y) * view.bias).min(BIAS_SLOPE_MAX * d);
     let magnitude = to_point.abs() + Vec3::from(view.center).abs();
     let rounding =
@@ -93,6 +150,10 @@ pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Ve
         t,
         d,
         biased: d + slope_bias + rounding,
+        plane: match height < 0.0 {
+            true => plane.clamp(Vec2::splat(-PLANE_MAX), Vec2::splat(PLANE_MAX)),
+            false => Vec2::ZERO,
+        },
         ku: Vec2::new(fit.near / (focal.x * half.x), 0.0),
         kv: Vec2::new(0.0, fit.near / (focal.y * half.y)),
         b: Vec2::ZERO,

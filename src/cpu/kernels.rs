@@ -53,7 +53,7 @@ pub fn kernel_of(view: &View, oblique: bool, receiver: &Receiver, mssm: &Mssm) -
     }
     match found {
         Some((cells, range)) if depth_max > receiver.biased => Kernel {
-            status: if cells.whole && range[0] > receiver.biased {
+            status: if cells.whole && range[0] > highest_limit(receiver, &cells) {
                 KERNEL_UMBRA
             } else {
                 KERNEL_PENUMBRA
@@ -65,6 +65,13 @@ pub fn kernel_of(view: &View, oblique: bool, receiver: &Receiver, mssm: &Mssm) -
         },
         _ => lit,
     }
+}
+
+/// The highest limit at the samples of the cells' corners.
+fn highest_limit(receiver: &Receiver, cells: &Cells) -> f32 {
+    receiver
+        .limit()
+        .highest(cells.first, cells.last.map(|i| i + 1))
 }
 
 /// The cells that occluders no nearer to the light than `depth_max` can project from.

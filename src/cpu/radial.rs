@@ -79,14 +79,14 @@ impl<'a> SubLight<'a> {
         let t = receiver.t.as_dvec2();
         let eye = self.lifted(t, receiver.d.into());
         let mut beyond = 0.0;
-        let limit = receiver.biased;
-        self.map.for_each_segment(first, last, limit, |segment| {
+        let limit = receiver.limit();
+        self.map.for_each_segment(first, last, &limit, |segment| {
             if let Some(ends) = self.projected(eye, &segment) {
                 let side = segment.side_of(t);
                 beyond += side * self.area_beyond(ends, side);
             }
         });
-        let center = if self.map.hides(t, receiver.biased) {
+        let center = if self.map.hides(t, &limit) {
             self.area
         } else {
             0.0

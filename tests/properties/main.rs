@@ -11,6 +11,7 @@ mod ends;
 mod frames;
 mod generated;
 mod similarity;
+mod tilted;
 
 use std::sync::Arc;
 
