@@ -71,12 +71,18 @@ void include(inout Survey survey, Kernel kernel, Receiver receiver) {
 // The probability that the packet's pixels see different contours is small, and sharing the traversal
 // costs less than it saves.
 // DEVIATION [Yang09 eq. 4]: depths are projective, since an empty sample has no finite linear depth.
+// DEVIATION [Yang09 eq. 4]: the spread of the receivers' planes counts as that of their depths does.
 // DEVIATION [Yang09 eq. 6]: only penumbra pixels count, for the others are not integrated.
 bool is_coherent(Survey survey) {
     float width = width_of(survey.first, survey.last);
     float overlap = min(survey.packet.depth_max, survey.kernel_depths.y)
                   - max(survey.packet.depth_min, survey.kernel_depths.x);
-    float null = clamp(overlap / max(survey.kernel_depths.y - survey.kernel_depths.x, 1e-30), 0.0, 1.0);
+    // How far apart the pixels' planes are at the kernel's farthest corner: the same question about what `limit_at` adds.
+    vec2 origin = survey.packet.origin;
+    precise vec2 reach = max(abs(vec2(survey.first) - origin), abs(vec2(survey.last) - origin));
+    precise vec2 tilts = (survey.packet.planes.zw - survey.packet.planes.xy) * reach;
+    precise float apart = (survey.packet.plane_depths.y - survey.packet.plane_depths.x) + (tilts.x + tilts.y);
+    float null = clamp(max(overlap, apart) / max(survey.kernel_depths.y - survey.kernel_depths.x, 1e-30), 0.0, 1.0);
     float divergence = 1.0 - pow(1.0 - null, width * width);
     if (divergence > DIVERGENCE_MAX) return false;
     precise float packet_cost = node_cost(width) + (costs.edge + costs.visibility * float(survey.count)) * width;

@@ -270,7 +270,8 @@ typedef struct hs_vk_slot {
     const void *next;
     // Depths or positions, a format that can be sampled.
     const struct hs_vk_image *surface;
-    // Normals of the visible side, of any length but 0 (0 = no surface), a format that can be sampled.
+    // Normals of the visible side, of any length but 0 (0 = no surface), a format that can be sampled. Those of the
+    // surface itself, not of a normal map: what is below their plane casts no shadow.
     const struct hs_vk_image *normal;
     // The result, a colour format that can be drawn to, the same in all slots: 1 lit ... 0 umbra in all channels.
     const struct hs_vk_image *visibility;
@@ -365,8 +366,7 @@ typedef struct hs_vk_view {
 } hs_vk_view;
 
 // Draws the casters of a view with the host's own pipelines. May bind what it likes, must not end rendering, and may
-// call nothing of this library. Surfaces that shadow nothing that is seen, such as a flat ground, are best left out:
-// where they are nearer to the light than a receiver of the same surface, they hide the contours in front of them.
+// call nothing of this library.
 typedef void (*hs_vk_draw)(const struct hs_vk_view *view, void *user);
 
 // A shadow map that the host has drawn.

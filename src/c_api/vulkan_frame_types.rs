@@ -58,7 +58,8 @@ pub struct hs_vk_slot {
     pub next: *const c_void,
     /// Depths or positions, a format that can be sampled.
     pub surface: *const hs_vk_image,
-    /// Normals of the visible side, of any length but 0 (0 = no surface), a format that can be sampled.
+    /// Normals of the visible side, of any length but 0 (0 = no surface), a format that can be sampled. Those of the
+    /// surface itself, not of a normal map: what is below their plane casts no shadow.
     pub normal: *const hs_vk_image,
     /// The result, a colour format that can be drawn to, the same in all slots: 1 lit ... 0 umbra in all channels.
     pub visibility: *const hs_vk_image,
@@ -179,8 +180,7 @@ pub struct hs_vk_view {
 }
 
 /// Draws the casters of a view with the host's own pipelines. May bind what it likes, must not end rendering, and may
-/// call nothing of this library. Surfaces that shadow nothing that is seen, such as a flat ground, are best left out:
-/// where they are nearer to the light than a receiver of the same surface, they hide the contours in front of them.
+/// call nothing of this library.
 pub type hs_vk_draw = Option<unsafe extern "C" fn(view: *const hs_vk_view, user: *mut c_void)>;
 
 /// A frame.

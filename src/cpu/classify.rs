@@ -107,7 +107,13 @@ impl Survey {
         let [near_end, far_end] = [self.kernel_depths[1], self.kernel_depths[0]];
         let overlap = packet.depth_max.min(near_end) - packet.depth_min.max(far_end);
         // Eq. 4 and 5.
-        let null = (overlap / (near_end - far_end).max(1e-30)).clamp(0.0, 1.0);
+        let origin = Vec2::from(packet.origin);
+        let cell = |[x, y]: [i32; 2]| (Vec2::new(x as f32, y as f32) - origin).abs();
+        let reach = cell(self.first).max(cell(self.last));
+        let [least_x, least_y, most_x, most_y] = packet.planes;
+        let tilts = (Vec2::new(most_x, most_y) - Vec2::new(least_x, least_y)) * reach;
+        let apart = (packet.plane_depths[1] - packet.plane_depths[0]) + (tilts.x + tilts.y);
+        let null = (overlap.max(apart) / (near_end - far_end).max(1e-30)).clamp(0.0, 1.0);
         let divergence = 1.0 - (1.0 - null).powf(width * width);
         // Eq. 6.
         let shared = node_cost(width) + (costs.edge + costs.visibility * self.count as f32) * width;

@@ -3,6 +3,8 @@
 //!
 //! Right: the same visibility as [GBP07], at a fraction of its cost. Wrong: what a single view per
 //! sub-light cannot see; occluders at different depths that overlap on the light count twice.
+//! DEVIATION [Yang09]: samples below the receiver's plane do not occlude (`limit_at`), so that tilted surfaces are no
+//! occluders of themselves.
 
 use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, Work};
 use crate::shot::Settings;

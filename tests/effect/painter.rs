@@ -36,14 +36,7 @@ impl Painter {
     /// `projections`: of the effect, as it is prepared now.
     pub fn new(host: &mut Host, shot: &Shot, projections: vk::Buffer) -> Self {
         let scene = &shot.scene;
-        // Without the ground, which shadows nothing that is seen: the lowest points of the scene.
-        let height = |&i: &u32| scene.positions[i as usize].y;
-        let lowest = scene
-            .positions
-            .iter()
-            .fold(f32::INFINITY, |lowest, p| lowest.min(p.y));
-        let casts = |corners: &&[u32; 3]| corners.iter().any(|i| height(i) > lowest);
-        let corners = scene.triangles.iter().filter(casts).flatten();
+        let corners = scene.triangles.iter().flatten();
         let corners: Vec<[f32; 3]> = corners
             .map(|&i| scene.positions[i as usize].to_array())
             .collect();
