@@ -115,6 +115,9 @@ shared_constants! {
     /// [share of d_p] Largest slope bias: receivers at grazing angles would otherwise lose their
     /// contact shadows altogether.
     BIAS_SLOPE_MAX: float = 0.05;
+    /// [per texel] Steepest plane of a receiver: a sample's depth is at most 1, so what changes by more is beyond all
+    /// samples one texel on.
+    PLANE_MAX: float = 2.0;
     /// [share of d_p] Bias for the rounding of positions and depths, per unit of the coordinates'
     /// magnitude over the receiver's depth.
     BIAS_ROUNDING: float = 1e-6;

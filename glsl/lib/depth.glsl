@@ -53,9 +53,6 @@ bool in_view(View view, vec3 to_point, vec3 normal) {
     return sum > dot_exact(normal, to_point);
 }
 
-// [per texel] A sample's depth is at most 1: what changes by more is beyond all samples one texel on.
-const float PLANE_MAX = 2.0;
-
 Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     Receiver receiver;
     precise vec3 p = to_face(view, to_point);

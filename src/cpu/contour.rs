@@ -31,11 +31,8 @@ impl ShadowMap<'_> {
 
     /// The contour's segments in a cell round the samples nearer to the light than `limit`.
     pub fn segments(&self, cell: [i32; 2], limit: &Limit) -> impl Iterator<Item = Segment> + use<> {
-        segments_of(
-            self.corners(cell),
-            cell,
-            occluding(self.corners(cell), cell, limit),
-        )
+        let depths = self.corners(cell);
+        segments_of(depths, cell, occluding(depths, cell, limit))
     }
 
     /// The contour's segments in the cells first … last, inclusive, one after the other.

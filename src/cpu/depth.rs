@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::shared::{BIAS_ROUNDING, BIAS_SLOPE_MAX, Fit, View};
+use crate::shared::{BIAS_ROUNDING, BIAS_SLOPE_MAX, Fit, PLANE_MAX, View};
 
 /// Where a receiver falls on a view's map, how deep, and its back-projection to the light:
 /// q = (ku · Δt, kv · Δt) / (Δd + b · Δt), with Δt = t − t_p and Δd = d − d_p.
@@ -71,9 +71,6 @@ impl Receiver {
         }
     }
 }
-
-/// [per texel] As in the shader: beyond all samples one texel on.
-const PLANE_MAX: f32 = 2.0;
 
 fn to_face(view: &View, world: Vec3) -> Vec3 {
     Vec3::new(

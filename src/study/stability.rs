@@ -11,6 +11,8 @@ use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
+use super::table;
+use crate::Result;
 use crate::compare::{compare, faces_wholly};
 use crate::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
 use crate::gpu::Gpu;
@@ -18,7 +20,6 @@ use crate::image::Plane;
 use crate::plan::Outputs;
 use crate::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use crate::shot::{Settings, Shot};
-use crate::{Error, Result};
 
 pub use cases::{Case, cases};
 
@@ -263,15 +264,5 @@ fn technique_of(finding: &Finding) -> &str {
 /// # Errors
 /// A value cannot be written.
 pub fn csv(findings: &[Finding]) -> Result<String> {
-    let failed = |error: String| Error::Invalid(format!("the table cannot be written: {error}"));
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for finding in findings {
-        writer
-            .serialize(finding)
-            .map_err(|error| failed(error.to_string()))?;
-    }
-    let bytes = writer
-        .into_inner()
-        .map_err(|error| failed(error.to_string()))?;
-    String::from_utf8(bytes).map_err(|error| failed(error.to_string()))
+    table::written(findings.iter())
 }

@@ -1,5 +1,7 @@
 //! The table of all runs: `results.csv`, and the page's.
 
+use serde::Serialize;
+
 use crate::compare::Metrics;
 use crate::{Error, Result};
 
@@ -90,22 +92,25 @@ fn counted(run: &Run, name: &str) -> String {
 /// A value cannot be written.
 pub(super) fn csv(runs: &[Run]) -> Result<String> {
     let header = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).collect();
-    let rows = runs
-        .iter()
-        .map(|run| COLUMNS.iter().map(|(_, value)| value(run)).collect());
+    let rows = runs.iter().map(|run| {
+        COLUMNS
+            .iter()
+            .map(|(_, value)| value(run))
+            .collect::<Vec<_>>()
+    });
     written(std::iter::once(header).chain(rows))
 }
 
-/// Records as comma-separated values.
+/// Records as comma-separated values, below a header if they are structs.
 ///
 /// # Errors
 /// A value cannot be written.
-pub(super) fn written(records: impl Iterator<Item = Vec<String>>) -> Result<String> {
+pub(super) fn written(records: impl Iterator<Item = impl Serialize>) -> Result<String> {
     let failed = |error: String| Error::Invalid(format!("the table cannot be written: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     for record in records {
         writer
-            .write_record(record)
+            .serialize(record)
             .map_err(|error| failed(error.to_string()))?;
     }
     let bytes = writer
