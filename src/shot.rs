@@ -136,6 +136,20 @@ pub struct Shot {
 /// [pixel] The largest width and height of an image.
 pub const MAX_SIZE: u32 = 32768;
 
+/// [texel] What covers the way from a receiver to the samples that its technique compares it with.
+fn usual_bias(technique: Technique) -> f32 {
+    match technique {
+        // Their samples are compared with the receiver's plane. What is left is the rasteriser's grid, to which corners
+        // of triangles are moved: 1/16 of a texel is what Vulkan asks for.
+        Technique::PacketContour | Technique::PixelContour => 0.25,
+        // The nearest sample is within half a texel.
+        Technique::ReferenceMaps => 0.5,
+        // A filter of many texels: where the mean of the error is nothing on most scenes.
+        Technique::Pcss => 6.0,
+        _ => 1.0,
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -157,28 +171,28 @@ impl Default for Settings {
             filter_samples: 32,
             percentage_closer: false,
             maps: 1024,
-            bias: 1.0,
+            bias: usual_bias(Technique::PacketContour),
             counters: false,
         }
     }
 }
 
 impl Settings {
-    /// The settings that a technique is known by: rivals have a single view, as in their publications.
+    /// The settings that a technique is known by: rivals have a single view, as in their publications, and each
+    /// technique the bias with which it errs least ([`usual_bias`]).
     pub fn usual(technique: Technique) -> Self {
         let usual = Self::default();
         Self {
             technique,
-            split: if technique == Technique::PacketContour {
-                usual.split
-            } else {
-                1
+            split: match technique {
+                Technique::PacketContour => usual.split,
+                _ => 1,
             },
-            layers: if technique == Technique::DepthPeeling {
-                4
-            } else {
-                1
+            layers: match technique {
+                Technique::DepthPeeling => 4,
+                _ => 1,
             },
+            bias: usual_bias(technique),
             ..usual
         }
     }

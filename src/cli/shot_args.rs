@@ -40,8 +40,9 @@ pub struct ShotArgs {
     #[arg(long, value_name = "BITS", default_value_t = 32)]
     mssm_bits: u32,
     /// Depth bias in texels of the receiver's slope, 0 or more
-    #[arg(long, value_name = "TEXELS", default_value_t = 1.0)]
-    bias: f32,
+    /// [default: 0.25 with contours, 0.5 with reference-maps, 6 with pcss, else 1]
+    #[arg(long, value_name = "TEXELS")]
+    bias: Option<f32>,
     /// Visit nodes whose back-projection misses the light as well, as the paper does
     #[arg(long)]
     no_footprint_pruning: bool,
@@ -130,7 +131,7 @@ impl ShotArgs {
             filter_samples: self.filter_samples,
             percentage_closer: self.percentage_closer,
             maps: self.maps,
-            bias: self.bias,
+            bias: self.bias.unwrap_or(usual.bias),
             counters: self.counters,
         }
     }

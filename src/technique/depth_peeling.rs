@@ -4,8 +4,8 @@
 //! Right: occluders behind other occluders are no longer missed, and their patches close the gaps of the first layer,
 //! without gap filling. Wrong: the areas of all layers add up, so a solid whose front and back are both layers hides
 //! its part of the light twice: shadows are too dark. How many layers are needed depends on the scene.
-//! DEVIATION [BCS08]: no midpoints between layers against self-shadowing; all techniques share one bias. Contours, not
-//! patches, leave out samples below the receiver's plane, as in `packet_contour`.
+//! DEVIATION [BCS08]: no midpoints between layers against self-shadowing, but a slope bias. Contours, not patches, leave
+//! out samples below the receiver's plane, as in `packet_contour`.
 
 use super::Recipe;
 use crate::shot::Settings;

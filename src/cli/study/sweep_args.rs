@@ -46,7 +46,7 @@ pub struct SweepArgs {
     /// Values of --maps of reference-maps [default: 256]
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
     reference_maps: Vec<u32>,
-    /// Values of --bias [default: 1]
+    /// Values of --bias [default: each technique's own]
     #[arg(long, value_name = "TEXELS", value_delimiter = ',')]
     biases: Vec<f32>,
 }
