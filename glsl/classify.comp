@@ -31,6 +31,8 @@ struct Survey {
     uint count;
     vec2 kernel_depths;
     float pixel_cost;
+    // A receiver has the sub-light's centre behind its plane; what bounds the others' limits does not hold for it.
+    bool behind;
 };
 
 float node_cost(float width) {
@@ -48,6 +50,7 @@ void include(inout Survey survey, Kernel kernel, Receiver receiver) {
     ivec2 last = unpacked(kernel.last);
     survey.first = min(survey.first, first);
     survey.last = max(survey.last, last);
+    survey.behind = survey.behind || receiver.behind;
     if (survey.count == 0u) survey.packet.origin = receiver.t;
     precise vec2 way = survey.packet.origin - receiver.t;
     precise float at_origin = receiver.biased + (receiver.plane.x * way.x + receiver.plane.y * way.y);
@@ -74,6 +77,7 @@ void include(inout Survey survey, Kernel kernel, Receiver receiver) {
 // DEVIATION [Yang09 eq. 4]: the spread of the receivers' planes counts as that of their depths does.
 // DEVIATION [Yang09 eq. 6]: only penumbra pixels count, for the others are not integrated.
 bool is_coherent(Survey survey) {
+    if (survey.behind) return false;
     float width = width_of(survey.first, survey.last);
     float overlap = min(survey.packet.depth_max, survey.kernel_depths.y)
                   - max(survey.packet.depth_min, survey.kernel_depths.x);
@@ -104,6 +108,7 @@ void main() {
     survey.count = 0u;
     survey.kernel_depths = vec2(1e30, 0.0);
     survey.pixel_cost = 0.0;
+    survey.behind = false;
     for (uint i = 0u; i < size.x * size.y; ++i) {
         uvec2 pixel = at * size + uvec2(i % size.x, i / size.x);
         if (any(greaterThanEqual(pixel, frame.size))) continue;

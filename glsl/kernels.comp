@@ -39,7 +39,7 @@ Kernel kernel_of(View view, Fit fit, Receiver receiver) {
         depth_max = range.y;
     }
     if (depth_max <= receiver.biased) return kernel;
-    bool umbra = cells.whole && range.x > highest_limit(receiver, cells.first, cells.last + 1);
+    bool umbra = cells.whole && !receiver.behind && range.x > highest_limit(receiver, cells.first, cells.last + 1);
     kernel.status = umbra ? KERNEL_UMBRA : KERNEL_PENUMBRA;
     kernel.first = packed(cells.first);
     kernel.last = packed(cells.last);

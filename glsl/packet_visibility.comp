@@ -50,6 +50,8 @@ vec2 held_t[HELD];
 float held_d[HELD];
 float held_biased[HELD];
 vec2 held_plane[HELD];
+// Of a single pixel; packets have none.
+bool held_behind = false;
 vec2 held_ku[HELD];
 vec2 held_kv[HELD];
 vec2 held_b[HELD];
@@ -73,6 +75,7 @@ void hold(View view, Fit fit, uint slot, uint index) {
     held_d[slot] = receiver.d;
     held_biased[slot] = receiver.biased;
     held_plane[slot] = receiver.plane;
+    if (PIXELWISE) held_behind = receiver.behind;
     if (OBLIQUE) held_ku[slot] = receiver.ku;
     if (OBLIQUE) held_kv[slot] = receiver.kv;
     if (OBLIQUE) held_b[slot] = receiver.b;
@@ -81,8 +84,8 @@ void hold(View view, Fit fit, uint slot, uint index) {
 }
 
 Receiver receiver_of(uint slot) {
-    Receiver receiver = Receiver(held_t[slot], held_d[slot], held_biased[slot], held_plane[slot], vec2(kappa.x, 0.0),
-                                 vec2(0.0, kappa.y), vec2(0.0));
+    Receiver receiver = Receiver(held_t[slot], held_d[slot], held_biased[slot], held_plane[slot], PIXELWISE && held_behind,
+                                 vec2(kappa.x, 0.0), vec2(0.0, kappa.y), vec2(0.0));
     if (OBLIQUE) receiver.ku = held_ku[slot];
     if (OBLIQUE) receiver.kv = held_kv[slot];
     if (OBLIQUE) receiver.b = held_b[slot];
@@ -102,8 +105,11 @@ bool penumbra_pixel(Packet packet, uint i, out uint index) {
 Packet packet_of_pixel(uint index) {
     Kernel kernel = kernels[index];
     Receiver receiver = receiver_of(0u);
-    return Packet(index, kernel.first, kernel.last, receiver.biased, receiver.biased, receiver.d, receiver.t.xyxy,
-                  receiver.t, vec2(receiver.biased), receiver.plane.xyxy);
+    // Seen from behind its plane, no sample is so near to the light that it must occlude.
+    float depth_max = receiver.behind ? 1e30 : receiver.biased;
+    vec2 plane = receiver.behind ? vec2(0.0) : receiver.plane;
+    return Packet(index, kernel.first, kernel.last, receiver.biased, depth_max, receiver.d, receiver.t.xyxy, receiver.t,
+                  vec2(receiver.biased), plane.xyxy);
 }
 
 // Bounds of the packet's pixels' limits (`limit_at`) at the samples of a box: a lower one and an upper one.
@@ -133,7 +139,7 @@ uint mask_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
     vec2 d = limits_in(packet, at + vec2(0.0, 1.0), at + vec2(0.0, 1.0));
     uint mask = mask_of(depths, vec4(a.y, b.y, c.y, d.y));
     agreed = PIXELWISE || mask == mask_of(depths, vec4(a.x, b.x, c.x, d.x));
-    if (PIXELWISE) mask = mask_of(depths, limits_of(receiver_of(0u), cell));
+    if (PIXELWISE) mask = occluding(receiver_of(0u), cell, depths);
     return mask;
 }
 
@@ -277,7 +283,7 @@ void integrate_apart(View view, Cursor cursor) {
         more = false;
         for (uint slot = 0u; slot < held_end; ++slot) {
             Receiver receiver = receiver_of(slot);
-            uint mask = mask_of(cursor.depths, limits_of(receiver, cursor.cell));
+            uint mask = occluding(receiver, cursor.cell, cursor.depths);
             beyond[slot] += segment_beyond(view, receiver, cursor.cell, cursor.depths, mask, segment);
             edges_extracted += uint(is_held[slot] && segment < segment_count(mask));
             more = more || segment + 1u < segment_count(mask);

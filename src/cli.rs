@@ -20,6 +20,7 @@ pub mod render;
 pub mod shot_args;
 mod stats;
 pub mod study;
+mod time_limit;
 
 /// The user's folders for caches and data. None: there is no home folder.
 pub fn project_folders() -> Option<directories::ProjectDirs> {

@@ -10,6 +10,8 @@ struct Receiver {
     float biased;
     // [per texel] By how much the depth of the receiver's own plane changes; see `limit_at`.
     vec2 plane;
+    // The sub-light's centre is behind the plane: what stands above the plane is farther away than it; see `ceiling_at`.
+    bool behind;
     // Back-projection q = (ku · Δt, kv · Δt) / (Δd + b · Δt), with Δt = t − t_p and Δd = d − d_p.
     vec2 ku;
     vec2 kv;
@@ -74,9 +76,9 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     receiver.t = t;
     receiver.d = d;
     receiver.biased = biased;
-    // Where the sub-light's centre is behind the plane, the plane bounds nothing.
-    precise vec2 plane = n.xy * fit.near / (fit.focal * min(height, -1e-30));
-    receiver.plane = height < 0.0 ? clamp(plane, -PLANE_MAX, PLANE_MAX) : vec2(0.0);
+    receiver.behind = !(height < 0.0);
+    precise vec2 plane = n.xy * fit.near / (fit.focal * (receiver.behind ? max(height, 1e-30) : min(height, -1e-30)));
+    receiver.plane = clamp(plane, -PLANE_MAX, PLANE_MAX);
     precise vec2 ku = vec2(fit.near / (fit.focal.x * view.half_size.x), 0.0);
     precise vec2 kv = vec2(0.0, fit.near / (fit.focal.y * view.half_size.y));
     precise vec2 b = vec2(0.0);
@@ -102,8 +104,17 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
 float limit_at(Receiver receiver, vec2 texel) {
     precise vec2 way = texel - receiver.t;
     precise float rise = receiver.plane.x * way.x + receiver.plane.y * way.y;
-    precise float limit = receiver.biased + max(rise, 0.0);
+    precise float limit = receiver.biased + (receiver.behind ? 0.0 : max(rise, 0.0));
     return limit;
+}
+
+// Seen from behind the receiver's plane, samples above it occlude up to this depth. What is nearer to the sub-light's
+// centre is below the plane, as is the surface itself, and hides only such parts of the light as are below it as well.
+float ceiling_at(Receiver receiver, vec2 texel) {
+    precise vec2 way = texel - receiver.t;
+    precise float rise = receiver.plane.x * way.x + receiver.plane.y * way.y;
+    precise float ceiling = (receiver.d - (receiver.biased - receiver.d)) + rise;
+    return ceiling;
 }
 
 // The limits at a cell's corners, counter-clockwise from (0, 0).
@@ -111,6 +122,12 @@ vec4 limits_of(Receiver receiver, ivec2 cell) {
     vec2 at = vec2(cell);
     return vec4(limit_at(receiver, at), limit_at(receiver, at + vec2(1.0, 0.0)), limit_at(receiver, at + vec2(1.0, 1.0)),
                 limit_at(receiver, at + vec2(0.0, 1.0)));
+}
+
+vec4 ceilings_of(Receiver receiver, ivec2 cell) {
+    vec2 at = vec2(cell);
+    return vec4(ceiling_at(receiver, at), ceiling_at(receiver, at + vec2(1.0, 0.0)),
+                ceiling_at(receiver, at + vec2(1.0, 1.0)), ceiling_at(receiver, at + vec2(0.0, 1.0)));
 }
 
 // The highest limit at samples first … last.

@@ -7,7 +7,7 @@ uint find_contour(Listed listed, uint layer, inout Scan scan) {
     uint turns = 0u;
     while (segment_count(mask) == 0u && !at_end(scan) && !out_of_turns(turns)) {
         ++turns;
-        mask = mask_of(depths_of(layer, scan.at), limits_of(listed.receiver, scan.at));
+        mask = occluding(listed.receiver, scan.at, depths_of(layer, scan.at));
         if (segment_count(mask) == 0u) advance(scan);
     }
     nodes_visited += turns;
@@ -38,7 +38,7 @@ float centre_area(Listed listed, uint layer) {
     bool inside = false;
     if (all(lessThan(uvec2(cell), uvec2(listed.view.map_size - 1u)))) {
         vec4 depths = depths_of(layer, cell);
-        inside = inside_contour(cell, depths, mask_of(depths, limits_of(listed.receiver, cell)), listed.receiver.t);
+        inside = inside_contour(cell, depths, occluding(listed.receiver, cell, depths), listed.receiver.t);
     }
     return inside ? listed.view.area : 0.0;
 }

@@ -43,6 +43,12 @@ float segment_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint
     return segment < segment_count(mask) ? beyond : 0.0;
 }
 
+// The corners of a cell that occlude.
+uint occluding(Receiver receiver, ivec2 cell, vec4 depths) {
+    uint mask = mask_of(depths, limits_of(receiver, cell));
+    return receiver.behind ? mask & ~mask_of(depths, ceilings_of(receiver, cell)) : mask;
+}
+
 // The samples at a cell's corners, counter-clockwise from (0, 0).
 vec4 samples_of(texture2D shadow_map, ivec2 cell) {
     return vec4(texelFetch(shadow_map, cell, 0).x, texelFetch(shadow_map, cell + ivec2(1, 0), 0).x,
@@ -56,7 +62,7 @@ float occluded_share(View view, Receiver receiver, texture2D shadow_map, float b
     bool inside = false;
     if (all(lessThan(uvec2(cell), uvec2(view.map_size - 1u)))) {
         vec4 depths = samples_of(shadow_map, cell);
-        inside = inside_contour(cell, depths, mask_of(depths, limits_of(receiver, cell)), receiver.t);
+        inside = inside_contour(cell, depths, occluding(receiver, cell, depths), receiver.t);
     }
     return clamp(((inside ? view.area : 0.0) - beyond) / view.area, 0.0, 1.0);
 }

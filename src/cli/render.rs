@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use halfshade::gpu::Gpu;
 use halfshade::image::{Plane, RgbImage, check_writable, write_atomically, write_exr};
@@ -15,6 +16,7 @@ use super::calibration::Calibration;
 use super::progress;
 use super::shot_args::{DeviceArgs, ShotArgs};
 use super::stats::Stats;
+use super::time_limit::{TimeLimit, parse_seconds};
 
 /// Renders a shot: a shaded picture, the visibility of each light, and what it cost.
 ///
@@ -52,6 +54,9 @@ pub struct Args {
     /// Constant light from everywhere, 0 or more, so that umbrae are dark rather than black
     #[arg(long, value_name = "RADIANCE", default_value_t = DEFAULT_EXPOSURE.ambient)]
     ambient: f32,
+    /// Longest that rendering may take, loading and building of pipelines included [default: as long as it takes]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    max_seconds: Option<Duration>,
 }
 
 /// What a run has made. It is written when the device is closed and the validation layer has had its
@@ -71,7 +76,9 @@ pub fn run(args: &Args) -> Result<()> {
             "--exposure and --ambient must be finite, --ambient not negative".into(),
         ));
     }
+    let limit = args.max_seconds.map(TimeLimit::start);
     let products = args.device.with_device(|gpu| render(args, gpu))?;
+    drop(limit);
     products.write(args)?;
     super::print(&format!("{}\n", products.stats.summary()))
 }

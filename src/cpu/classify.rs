@@ -37,6 +37,7 @@ struct Survey {
     count: u32,
     kernel_depths: [f32; 2],
     pixel_cost: f32,
+    behind: bool,
 }
 
 /// Surveys a packet's penumbra pixels, in the order of the packet's rows. None: it has none.
@@ -55,6 +56,7 @@ pub fn classify(index: u32, pixels: &[(Kernel, Receiver)], costs: &Costs) -> Opt
         count: 0,
         kernel_depths: [1e30, 0.0],
         pixel_cost: 0.0,
+        behind: pixels.iter().any(|(_, receiver)| receiver.behind),
     };
     let (mut lower, mut upper) = (Vec2::splat(1e30), Vec2::splat(-1e30));
     let (mut planes, mut plane_depths) = ((lower, upper), (1e30f32, -1e30f32));
@@ -103,6 +105,9 @@ impl Survey {
     }
 
     fn decide(&self, packet: &Packet, costs: &Costs) -> Decision {
+        if self.behind {
+            return Decision::Incoherent;
+        }
         let width = width_of(self.first, self.last);
         let [near_end, far_end] = [self.kernel_depths[1], self.kernel_depths[0]];
         let overlap = packet.depth_max.min(near_end) - packet.depth_min.max(far_end);

@@ -29,7 +29,7 @@ impl ShadowMap<'_> {
         CORNERS.map(|[x, y]| self.depths[((cell[1] + y) * self.size + cell[0] + x) as usize])
     }
 
-    /// The contour's segments in a cell round the samples nearer to the light than `limit`.
+    /// The contour's segments in a cell round the samples that pass `limit`.
     pub fn segments(&self, cell: [i32; 2], limit: &Limit) -> impl Iterator<Item = Segment> + use<> {
         let depths = self.corners(cell);
         segments_of(depths, cell, occluding(depths, cell, limit))
@@ -79,7 +79,10 @@ impl ShadowMap<'_> {
 
 /// Which corners of a cell occlude.
 fn occluding(depths: [f32; 4], cell: [i32; 2], limit: &Limit) -> [bool; 4] {
-    std::array::from_fn(|i| depths[i] > limit.at([0, 1].map(|axis| cell[axis] + CORNERS[i][axis])))
+    std::array::from_fn(|i| {
+        let corner = [0, 1].map(|axis| cell[axis] + CORNERS[i][axis]);
+        limit.is_passed(corner, depths[i])
+    })
 }
 
 /// The contour's segments in a cell with these depths at its corners, of which some occlude.

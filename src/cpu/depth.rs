@@ -17,12 +17,14 @@ pub struct Receiver {
     pub biased: f32,
     /// [per texel] By how much the depth of the receiver's own plane changes; see [`Limit`].
     pub plane: Vec2,
+    /// The sub-light's centre is behind the plane.
+    pub behind: bool,
     pub ku: Vec2,
     pub kv: Vec2,
     pub b: Vec2,
 }
 
-/// The depths beyond which samples occlude: nearer to the light than the receiver, and above its plane.
+/// The depths between which samples occlude: nearer to the light than the receiver, and above its plane.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     /// The least, at and below the receiver's own height.
@@ -31,6 +33,9 @@ pub struct Limit {
     pub plane: Vec2,
     /// [texel] Where the plane has the least depth.
     pub t: Vec2,
+    /// Seen from behind the plane, samples above it occlude up to this depth at `t`; the least depth is the same
+    /// everywhere then.
+    pub ceiling: Option<f32>,
 }
 
 impl Limit {
@@ -40,13 +45,27 @@ impl Limit {
             least: depth,
             plane: Vec2::ZERO,
             t: Vec2::ZERO,
+            ceiling: None,
         }
     }
 
-    /// At a sample.
-    pub fn at(&self, [x, y]: [i32; 2]) -> f32 {
+    fn rise(&self, [x, y]: [i32; 2]) -> f32 {
         let way = Vec2::new(x as f32, y as f32) - self.t;
-        self.least + (self.plane.x * way.x + self.plane.y * way.y).max(0.0)
+        self.plane.x * way.x + self.plane.y * way.y
+    }
+
+    /// Whether a sample of this depth occludes.
+    pub fn is_passed(&self, sample: [i32; 2], depth: f32) -> bool {
+        let below = |ceiling| depth > ceiling + self.rise(sample);
+        depth > self.at(sample) && !self.ceiling.is_some_and(below)
+    }
+
+    /// The lower one, at a sample.
+    pub fn at(&self, sample: [i32; 2]) -> f32 {
+        match self.ceiling {
+            None => self.least + self.rise(sample).max(0.0),
+            Some(_) => self.least,
+        }
     }
 
     /// The highest at samples first … last.
@@ -68,6 +87,7 @@ impl Receiver {
             least: self.biased,
             plane: self.plane,
             t: self.t,
+            ceiling: self.behind.then(|| self.d - (self.biased - self.d)),
         }
     }
 }
@@ -137,7 +157,12 @@ pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Ve
     let n = to_face(view, normal);
     let height = n.dot(p);
     let slope = n.truncate().abs() * fit.near / (focal * height.abs().max(1e-30));
-    let plane = n.truncate() * fit.near / (focal * height.min(-1e-30));
+    let behind = height >= 0.0;
+    let away = match behind {
+        true => height.max(1e-30),
+        false => height.min(-1e-30),
+    };
+    let plane = n.truncate() * fit.near / (focal * away);
     let slope_bias = ((slope.x + slope.y) * view.bias).min(BIAS_SLOPE_MAX * d);
     let magnitude = to_point.abs() + Vec3::from(view.center).abs();
     let rounding =
@@ -147,10 +172,8 @@ pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Ve
         t,
         d,
         biased: d + slope_bias + rounding,
-        plane: match height < 0.0 {
-            true => plane.clamp(Vec2::splat(-PLANE_MAX), Vec2::splat(PLANE_MAX)),
-            false => Vec2::ZERO,
-        },
+        plane: plane.clamp(Vec2::splat(-PLANE_MAX), Vec2::splat(PLANE_MAX)),
+        behind,
         ku: Vec2::new(fit.near / (focal.x * half.x), 0.0),
         kv: Vec2::new(0.0, fit.near / (focal.y * half.y)),
         b: Vec2::ZERO,

@@ -53,7 +53,8 @@ pub fn kernel_of(view: &View, oblique: bool, receiver: &Receiver, mssm: &Mssm) -
     }
     match found {
         Some((cells, range)) if depth_max > receiver.biased => Kernel {
-            status: if cells.whole && range[0] > highest_limit(receiver, &cells) {
+            status: if cells.whole && !receiver.behind && range[0] > highest_limit(receiver, &cells)
+            {
                 KERNEL_UMBRA
             } else {
                 KERNEL_PENUMBRA

@@ -226,7 +226,8 @@ fn help_names_every_flag() {
     let shot = "--technique --packet --leaf --mapping --split --map --bias --no-footprint-pruning \
                 --hierarchical --counters --size --radius --scene --camera --device --validate \
                 --max-memory --allow-outside-paths --max-triangles --max-texels --max-expansion";
-    let render = "--output --visibility --light --stats --repeat --exposure --ambient";
+    let render =
+        "--output --visibility --light --stats --repeat --max-seconds --exposure --ambient";
     let folder = Folder::new();
     for (command, flags) in [
         ("render", format!("{shot} {render}")),

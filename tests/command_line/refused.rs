@@ -1,5 +1,7 @@
 //! What is refused: with one sentence, and without a file.
 
+use std::time::{Duration, Instant};
+
 use halfshade::image::{Plane, write_exr, write_png};
 
 use super::program::{Folder, plate, scenes};
@@ -99,6 +101,11 @@ fn settings_out_of_range() {
         ("--light", "1", "there is no light 1"),
         ("--ambient", "inf", "finite"),
         ("--max-memory", "1KiB", "--max-memory allows 1.0 KiB"),
+        (
+            "--max-seconds",
+            "0.001",
+            "after the 0.001 s of --max-seconds",
+        ),
     ] {
         folder.refuses(&[&RENDER[..], &[flag, value]].concat(), &[range]);
     }
@@ -115,6 +122,22 @@ fn settings_out_of_range() {
 }
 
 #[test]
+fn a_frame_that_takes_too_long_is_given_up() {
+    let folder = Folder::new();
+    folder.write_shot(&plate());
+    // Every cell of large kernels for every pixel: half a minute, most of it within a submission.
+    let slow = ["--technique", "pixel-contour", "--size", "256x256"];
+    let limited = [&RENDER[..], &slow, &["--max-seconds", "3"]].concat();
+    let start = Instant::now();
+    folder.refuses(
+        &limited,
+        &["after the 3 s of --max-seconds", "nothing was written"],
+    );
+    // Nor does the end of the process wait for the device.
+    assert!(start.elapsed() < Duration::from_secs(15));
+}
+
+#[test]
 fn wrong_usage() {
     let folder = Folder::new();
     folder.write_shot(&plate());
@@ -127,6 +150,8 @@ fn wrong_usage() {
         ("--packet", "4", "4x4"),
         ("--repeat", "0", "1..=10000"),
         ("--max-memory", "much", "512MiB"),
+        ("--max-seconds", "0", "above 0"),
+        ("--max-seconds", "1e300", "above 0"),
         ("--frobnicate", "1", "--frobnicate"),
     ] {
         folder.refuses_usage(&[&RENDER[..], &[flag, value]].concat(), &[word]);

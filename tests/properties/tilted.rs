@@ -23,6 +23,51 @@ fn plate_above(degrees: f64, settings: Settings) -> Shot {
     shot(scene.build(), eye, light, 64, settings)
 }
 
+/// A block whose front is to be looked at, under a light most of which is behind the front's plane, its centre included;
+/// a board before the right half hides some of the rest.
+fn block_under_a_cut_light(settings: Settings) -> Shot {
+    let front = [(0.0, -1.0), (0.0, 1.0), (3.0, 1.0), (3.0, -1.0)];
+    let top = [(-2.0, -1.0), (-2.0, 1.0), (0.0, 1.0), (0.0, -1.0)];
+    let board = [(0.1, 0.0), (0.1, 1.0), (0.5, 1.0), (0.5, 0.0)];
+    let scene = Triangles::new()
+        .polygon(&front.map(|(y, z)| DVec3::new(0.0, y, z)))
+        .polygon(&top.map(|(x, z)| DVec3::new(x, 3.0, z)))
+        .polygon(&board.map(|(x, z)| DVec3::new(x, 3.5, z)));
+    let light = rectangle_light(DVec3::new(-0.3, 6.0, 0.0), DVec2::splat(0.7));
+    let eye = camera(DVec3::new(5.0, 1.0, 0.0), DVec3::new(0.0, 1.5, 0.0), 40.0);
+    shot(scene.build(), eye, light, 64, settings)
+}
+
+/// Light below a surface's horizon does not count as hidden: the block hides nothing from its own front, in one view from
+/// behind the front's plane as in four, of which two are before it. With the block as an occluder that of one view
+/// would be 0.7; the noise of the rays is 0.001.
+#[test]
+fn a_block_does_not_hide_light_from_its_own_front() {
+    with_gpu(|gpu| {
+        for split in [1, 2] {
+            let shot = block_under_a_cut_light(settings(256, split));
+            let options = ReferenceOptions {
+                samples: 1024,
+                seed: 0,
+            };
+            let truth = trace(&shot, 0, options, &|_| {}, &AtomicBool::new(false)).expect("rays");
+            let image = visibility(gpu, &shot);
+            let cut = |pixel: &usize| (0.01..0.99).contains(&truth.facing.data[*pixel]);
+            let (mut shaded, mut open, mut errors) = (0, 0, Vec::new());
+            for pixel in (0..image.len()).filter(cut) {
+                let wanted = truth.visibility.data[pixel];
+                errors.push((image[pixel] - wanted).abs());
+                open += u32::from(wanted == 1.0);
+                shaded += u32::from(wanted < 0.95);
+            }
+            let mean = errors.iter().sum::<f32>() / errors.len() as f32;
+            println!("{split} a side: {open} open, {shaded} shaded, mean error {mean:.4}");
+            assert!(open > 100 && shaded > 100);
+            assert!(mean < 0.003, "{split} a side: {mean}");
+        }
+    });
+}
+
 /// Its edges are all that is off: within a texel of the map, of which the penumbra has some thirty across. Against the
 /// receiver's depth alone the means would be 0.047, 0.10 and 0.13.
 #[test]
