@@ -87,7 +87,7 @@ impl Receiver {
             least: self.biased,
             plane: self.plane,
             t: self.t,
-            ceiling: self.behind.then(|| self.d - (self.biased - self.d)),
+            ceiling: self.behind.then_some(self.d - (self.biased - self.d)),
         }
     }
 }
