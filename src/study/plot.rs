@@ -9,9 +9,11 @@ use crate::{Error, Result};
 use super::front::{error, front, time};
 use super::run::{Measured, Run};
 
-/// [pixel] Of a panel, and of the legend above all panels.
+/// [pixel] Of a panel.
 const PANEL: (u32, u32) = (640, 440);
-const LEGEND_HEIGHT: u32 = 64;
+/// [pixel] Of a line of the legend above all panels, which begins with a title.
+const LEGEND_LINE: i32 = 24;
+const LEGEND_TITLE: i32 = 32;
 /// Panels side by side.
 const COLUMNS: usize = 2;
 /// Errors and times below are drawn there: a logarithm has no zero.
@@ -57,16 +59,16 @@ pub(super) fn pareto(runs: &[Run]) -> Result<String> {
     }
     let columns = COLUMNS.min(panels.len()).max(1);
     let rows = panels.len().div_ceil(columns).max(1);
-    let size = (
-        PANEL.0 * columns as u32,
-        LEGEND_HEIGHT + PANEL.1 * rows as u32,
-    );
+    let width = PANEL.0 * columns as u32;
+    let legend = legend(runs, width as i32);
+    let legend_height = legend.last().map_or(0, |entry| entry.y) + LEGEND_LINE;
+    let size = (width, legend_height as u32 + PANEL.1 * rows as u32);
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         root.fill(&WHITE).map_err(failed)?;
-        let (legend, below) = root.split_vertically(LEGEND_HEIGHT);
-        draw_legend(&legend, runs)?;
+        let (above, below) = root.split_vertically(legend_height);
+        draw_legend(&above, &legend)?;
         for (area, (title, panel)) in below.split_evenly((rows, columns)).iter().zip(&panels) {
             draw_panel(area, title, panel)?;
         }
@@ -79,20 +81,43 @@ pub(super) fn failed<E: std::fmt::Display>(error: E) -> Error {
     Error::Invalid(format!("a plot cannot be drawn: {error}"))
 }
 
-fn draw_legend(area: &Area, runs: &[Run]) -> Result<()> {
+/// A technique in the legend and where it stands.
+struct Entry {
+    technique: Technique,
+    x: i32,
+    y: i32,
+}
+
+/// The techniques that were run, in lines of a width in pixels.
+fn legend(runs: &[Run], width: i32) -> Vec<Entry> {
     let used =
         |technique: &&Technique| runs.iter().any(|run| run.settings.technique == **technique);
+    let (mut x, mut y) = (18, LEGEND_TITLE);
+    let place = |&technique: &Technique| {
+        let needed = 30 + 8 * technique.name().len() as i32;
+        if x + needed > width {
+            (x, y) = (18, y + LEGEND_LINE);
+        }
+        x += needed;
+        Entry {
+            technique,
+            x: x - needed,
+            y,
+        }
+    };
+    Technique::ALL.iter().filter(used).map(place).collect()
+}
+
+fn draw_legend(area: &Area, legend: &[Entry]) -> Result<()> {
     let font = ("sans-serif", 13).into_font();
     let title = "Error against time: mean absolute error over shadow pixels, GPU time of the shadow passes; line: the front";
     area.draw(&Text::new(title, (12, 8), font.clone()))
         .map_err(failed)?;
-    let mut x = 18;
-    for &technique in Technique::ALL.iter().filter(used) {
-        let dot = Circle::new((x, 42), 5, color(technique).filled());
+    for &Entry { technique, x, y } in legend {
+        let dot = Circle::new((x, y + 7), 5, color(technique).filled());
         area.draw(&dot).map_err(failed)?;
-        area.draw(&Text::new(technique.name(), (x + 10, 35), font.clone()))
+        area.draw(&Text::new(technique.name(), (x + 10, y), font.clone()))
             .map_err(failed)?;
-        x += 30 + 8 * technique.name().len() as i32;
     }
     Ok(())
 }
