@@ -166,16 +166,6 @@ bool misses_light(View view, Packet packet, ivec2 node, int side, float depth_ma
     return misses;
 }
 
-// Whether, for a single pixel that sees the sub-light's centre behind its plane, all samples of a node occlude or none does.
-bool one_side_of_ceiling(Receiver receiver, ivec2 node, int side, vec2 bounds) {
-    vec2 lower = vec2(node);
-    vec2 upper = vec2(node + side);
-    bvec2 rising = greaterThan(receiver.plane, vec2(0.0));
-    float least = ceiling_at(receiver, mix(upper, lower, rising));
-    float most = ceiling_at(receiver, mix(lower, upper, rising));
-    return bounds.x > most || (bounds.x > receiver.biased && bounds.y <= least);
-}
-
 // Starts at the lowest level whose node at the kernel's corner covers the kernel, as far as that level is
 // built; beyond it there are several roots. Later rounds go on where the one before stood.
 Walk start_of(Packet packet, int level_count, uint entry) {

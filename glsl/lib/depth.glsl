@@ -98,22 +98,25 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     return receiver;
 }
 
+// By how much the receiver's plane is nearer to the light at a sample than at t_p.
+float rise_at(Receiver receiver, vec2 texel) {
+    precise vec2 way = texel - receiver.t;
+    precise float rise = receiver.plane.x * way.x + receiver.plane.y * way.y;
+    return rise;
+}
+
 // The depth beyond which a sample occludes: nearer to the light than the receiver, and above its plane. Without the plane,
 // where a tilted surface comes nearer to the light it would be an occluder itself, and the contour of what stands before
 // it would be lost. (DEVIATION [GBP07, Yang09]: they compare with the receiver's depth alone.)
 float limit_at(Receiver receiver, vec2 texel) {
-    precise vec2 way = texel - receiver.t;
-    precise float rise = receiver.plane.x * way.x + receiver.plane.y * way.y;
-    precise float limit = receiver.biased + (receiver.behind ? 0.0 : max(rise, 0.0));
+    precise float limit = receiver.biased + (receiver.behind ? 0.0 : max(rise_at(receiver, texel), 0.0));
     return limit;
 }
 
 // Seen from behind the receiver's plane, samples above it occlude up to this depth. What is nearer to the sub-light's
 // centre is below the plane, as is the surface itself, and hides only such parts of the light as are below it as well.
 float ceiling_at(Receiver receiver, vec2 texel) {
-    precise vec2 way = texel - receiver.t;
-    precise float rise = receiver.plane.x * way.x + receiver.plane.y * way.y;
-    precise float ceiling = (receiver.d - (receiver.biased - receiver.d)) + rise;
+    precise float ceiling = (receiver.d - (receiver.biased - receiver.d)) + rise_at(receiver, texel);
     return ceiling;
 }
 
@@ -124,6 +127,7 @@ vec4 limits_of(Receiver receiver, ivec2 cell) {
                 limit_at(receiver, at + vec2(0.0, 1.0)));
 }
 
+// The ceilings there.
 vec4 ceilings_of(Receiver receiver, ivec2 cell) {
     vec2 at = vec2(cell);
     return vec4(ceiling_at(receiver, at), ceiling_at(receiver, at + vec2(1.0, 0.0)),
@@ -133,6 +137,16 @@ vec4 ceilings_of(Receiver receiver, ivec2 cell) {
 // The highest limit at samples first … last.
 float highest_limit(Receiver receiver, ivec2 first, ivec2 last) {
     return limit_at(receiver, mix(vec2(first), vec2(last), greaterThan(receiver.plane, vec2(0.0))));
+}
+
+// Whether all samples of a node with these bounds of depth occlude a receiver that is seen from behind its plane, or none.
+bool one_side_of_ceiling(Receiver receiver, ivec2 node, int side, vec2 bounds) {
+    vec2 lower = vec2(node);
+    vec2 upper = vec2(node + side);
+    bvec2 rising = greaterThan(receiver.plane, vec2(0.0));
+    float least = ceiling_at(receiver, mix(upper, lower, rising));
+    float most = ceiling_at(receiver, mix(lower, upper, rising));
+    return bounds.x > most || (bounds.x > receiver.biased && bounds.y <= least);
 }
 
 // Where the line from the receiver through the occluder point (t_p + dt, d) meets the light plane, as
