@@ -62,6 +62,10 @@ fn check_mssm(traces: &Traces, bits: u32) -> Mssm {
 /// The twin's kernels, equal to the device's in every pixel and bit.
 fn check_kernels(traces: &Traces, receivers: &[Seen], mssm: &Mssm) -> Vec<Kernel> {
     let (view, oblique) = (&traces.planned.view, traces.planned.variant.oblique);
+    let map = ShadowMap {
+        size: MAP as i32,
+        depths: &traces.map,
+    };
     let mut statuses = [0u32; 4];
     let mut kernels = Vec::new();
     for (i, (receiver, found)) in receivers.iter().zip(&traces.kernels).enumerate() {
@@ -69,7 +73,8 @@ fn check_kernels(traces: &Traces, receivers: &[Seen], mssm: &Mssm) -> Vec<Kernel
             status: KERNEL_NONE,
             ..Kernel::default()
         };
-        let wanted = receiver.map_or(none, |receiver| kernel_of(view, oblique, &receiver, mssm));
+        let of = |receiver| kernel_of(view, oblique, &receiver, &map, mssm);
+        let wanted = receiver.map_or(none, of);
         let pixel = (i as u32 % SIZE, i as u32 / SIZE);
         assert_eq!(*found, wanted, "pixel {pixel:?}, {receiver:?}");
         statuses[wanted.status as usize] += 1;

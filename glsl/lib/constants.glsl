@@ -16,7 +16,7 @@ layout(constant_id = 12) const uint ROUNDS = 1u;        // [dispatch] in which a
 layout(constant_id = 13) const uint LAYERS = 1u;          // peeled layers of the shadow map
 layout(constant_id = 14) const bool PEEL = false;         // draw what lies behind the last layer
 layout(constant_id = 15) const bool GAP_FILLING = false;  // micropatches reach out to their neighbours
-layout(constant_id = 16) const bool CONTOURS = false;     // layers hold contours instead of micropatches
+layout(constant_id = 16) const bool CONTOURS = false;     // occluders are contours, not micropatches
 layout(constant_id = 17) const uint LIGHT_SAMPLES = 8u;   // a side of the bitmask
 layout(constant_id = 18) const bool JITTERED = false;     // light samples stand anywhere in their strata
 layout(constant_id = 19) const uint BLOCKER_SAMPLES = 1u; // of the blocker search

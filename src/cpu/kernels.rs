@@ -3,12 +3,16 @@
 
 use glam::Vec2;
 
+use super::contour::ShadowMap;
 use super::depth::{Receiver, extents};
 use super::mssm::Mssm;
 use crate::shared::{KERNEL_LIT, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
 
 /// Rounds of query and shrinking.
 const ROUNDS: u32 = 4;
+
+/// [cell] Kernels no wider and no higher are looked at sample by sample.
+const SAMPLED_SIDE: i32 = 2;
 
 /// Dual cells, inclusive.
 struct Cells {
@@ -27,8 +31,14 @@ fn packed(cell: [i32; 2]) -> u32 {
     cell[0] as u32 | (cell[1] as u32) << 16
 }
 
-/// The kernel of a receiver that the view has to look at.
-pub fn kernel_of(view: &View, oblique: bool, receiver: &Receiver, mssm: &Mssm) -> Kernel {
+/// The kernel of a receiver that the view has to look at, for contours.
+pub fn kernel_of(
+    view: &View,
+    oblique: bool,
+    receiver: &Receiver,
+    map: &ShadowMap,
+    mssm: &Mssm,
+) -> Kernel {
     let lit = Kernel {
         status: KERNEL_LIT,
         ..Kernel::default()
@@ -51,21 +61,29 @@ pub fn kernel_of(view: &View, oblique: bool, receiver: &Receiver, mssm: &Mssm) -
         }
         depth_max = range[1];
     }
-    match found {
-        Some((cells, range)) if depth_max > receiver.biased => Kernel {
-            status: if cells.whole && !receiver.behind && range[0] > highest_limit(receiver, &cells)
-            {
-                KERNEL_UMBRA
-            } else {
-                KERNEL_PENUMBRA
-            },
-            first: packed(cells.first),
-            last: packed(cells.last),
-            depth_min: range[0],
-            depth_max: range[1],
-        },
-        _ => lit,
+    let Some((cells, range)) = found.filter(|_| depth_max > receiver.biased) else {
+        return lit;
+    };
+    if nothing_occludes(receiver, map, &cells) {
+        return lit;
     }
+    let umbra = cells.whole && !receiver.behind && range[0] > highest_limit(receiver, &cells);
+    Kernel {
+        status: if umbra { KERNEL_UMBRA } else { KERNEL_PENUMBRA },
+        first: packed(cells.first),
+        last: packed(cells.last),
+        depth_min: range[0],
+        depth_max: range[1],
+    }
+}
+
+/// Whether a kernel is small, and no sample in it passes the receiver's limit.
+fn nothing_occludes(receiver: &Receiver, map: &ShadowMap, cells: &Cells) -> bool {
+    let limit = receiver.limit();
+    let is_small = (0..2).all(|axis| cells.last[axis] - cells.first[axis] < SAMPLED_SIDE);
+    let samples = |axis: usize| cells.first[axis]..=cells.last[axis] + 1;
+    let passed = |x, y| map.depths[(y * map.size + x) as usize] > limit.at([x, y]);
+    is_small && !samples(1).any(|y| samples(0).any(|x| passed(x, y)))
 }
 
 /// The highest limit at the samples of the cells' corners.

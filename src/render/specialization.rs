@@ -20,6 +20,10 @@ pub fn of_view(
     let footprint = settings.footprint_pruning && settings.technique == Technique::PacketContour;
     let held = if lanes { 1 } else { packet.0 * packet.1 };
     let gap_filling = settings.gap_filling && settings.technique != Technique::DepthPeeling;
+    let contours = match settings.technique {
+        Technique::PacketContour | Technique::PixelContour => true,
+        _ => settings.occluders == Occluders::Contours,
+    };
     let filter_reach = settings.technique == Technique::Hard && settings.percentage_closer;
     vec![
         (0, packet.0),
@@ -37,7 +41,7 @@ pub fn of_view(
         (12, plan.rounds(recipe)),
         (13, recipe.layers.max(1)),
         (15, u32::from(gap_filling)),
-        (16, u32::from(settings.occluders == Occluders::Contours)),
+        (16, u32::from(contours)),
         (17, settings.light_samples),
         (18, u32::from(settings.pattern == Pattern::Jittered)),
         (19, settings.blocker_samples),

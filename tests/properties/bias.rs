@@ -1,6 +1,7 @@
 //! The automatic bias over slopes from 0 to 89 degrees: a surface must not shade itself, and what lies on it must.
 
 use halfshade::scene::Material;
+use halfshade::shared::Counters;
 
 use super::*;
 
@@ -67,11 +68,14 @@ impl Slope {
         scene
     }
 
-    fn render(&self, gpu: &Arc<Gpu>, plate: Option<f64>) -> Image {
+    fn shot(&self, plate: Option<f64>) -> Shot {
         let eye = camera(DVec3::new(2.6, 3.0, 0.3), DVec3::new(0.1, -0.1, 0.0), 30.0);
         let light = rectangle_light(DISTANT, DVec2::splat(SMALL));
-        let shot = shot(self.scene(plate), eye, light, 96, settings(256, 1));
-        render(gpu, &shot)
+        shot(self.scene(plate), eye, light, 96, settings(256, 1))
+    }
+
+    fn render(&self, gpu: &Arc<Gpu>, plate: Option<f64>) -> Image {
+        render(gpu, &self.shot(plate))
     }
 
     /// Whether the whole light is hidden from a point of the surface by more than two texels' width of the plate.
@@ -141,6 +145,22 @@ fn surfaces_do_not_shade_themselves_and_what_lies_on_them_does() {
                 "{hidden} pixels under the plate at {degrees} degrees"
             );
             assert_eq!(leaks, 0, "a plate a texel above {degrees} degrees leaks");
+        }
+    });
+}
+
+/// The bias is less than what a surface rises by within a cell, so bounds do not tell it from an occluder; its samples do.
+#[test]
+fn a_bare_slope_needs_no_integration() {
+    with_gpu(|gpu| {
+        for degrees in SLOPES {
+            let mut shot = Slope { degrees }.shot(None);
+            shot.settings.counters = true;
+            let mut renderer = renderer(gpu, &shot);
+            renderer.render().expect("a frame");
+            let Counters { lit, penumbra, .. } = renderer.counters().expect("counters");
+            assert!(lit > 500, "{lit} pixels are lit at {degrees} degrees");
+            assert_eq!(penumbra, 0, "pixels are integrated at {degrees} degrees");
         }
     });
 }
