@@ -52,7 +52,7 @@ void main() {
             vec2 largest = min(largest_kernel(view, fit), vec2(side));
             side = max(largest.x, largest.y) + 2.0;
         }
-        int levels = level_covering(int(min(side, float(view.map_size)))) + 1;
+        int levels = max(level_covering(int(min(side, float(view.map_size)))) + 1 - int(ROOT_LEVELS), 1);
         fit.level_count = min(uint(levels), view.levels_max);
     }
     uvec3 map_groups = uvec3((uvec2(view.map_size) + TILE_SIZE - 1u) / TILE_SIZE, 1u);

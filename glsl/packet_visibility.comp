@@ -167,7 +167,7 @@ bool misses_light(View view, Packet packet, ivec2 node, int side, float depth_ma
 }
 
 // Starts at the lowest level whose node at the kernel's corner covers the kernel, as far as that level is
-// built; beyond it there are several roots. Later rounds go on where the one before stood.
+// built; beyond it there are several roots (`ROOT_LEVELS`). Later rounds go on where the one before stood.
 Walk start_of(Packet packet, int level_count, uint entry) {
     ivec2 first = unpacked(packet.first);
     ivec2 side = unpacked(packet.last) - first + 1;

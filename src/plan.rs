@@ -18,7 +18,7 @@ use crate::shared::{self, LEVELS_MAX, ROUNDS_MAX, SECTOR_STEPS, View};
 use crate::shot::{Settings, Shot};
 use crate::technique::{self, Recipe};
 use camera::Frustum;
-use memory::Inventory;
+use memory::{Inventory, mssm_levels};
 use survey::{Survey, survey};
 
 pub use host::{HostFrame, plan_for_host};
@@ -302,10 +302,9 @@ impl Plan {
         }
         self.map = side;
         if self.needs(|recipe| recipe.mssm) {
-            let wanted = (side - 1).ilog2() + 2;
             let level_bytes = u64::from(side) * u64::from(side) * self.mssm_texel_bytes();
             let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
-            self.levels = wanted.min(LEVELS_MAX).min(fitting as u32);
+            self.levels = mssm_levels(side).min(LEVELS_MAX).min(fitting as u32);
             if self.levels == 0 {
                 return Err(Error::Unsupported(format!(
                     "an MSSM level of {level_bytes} bytes is more than the device's largest image of {} bytes; \

@@ -91,8 +91,11 @@ macro_rules! shared_constants {
 }
 
 shared_constants! {
-    /// Most levels an MSSM can have: 8192 = 2^13, and the level of single cells.
-    LEVELS_MAX: uint = 14;
+    /// [level] The largest kernel starts from up to 4×4 roots: the two levels above them take longer to build than they
+    /// save, in all scenes seen.
+    ROOT_LEVELS: uint = 2;
+    /// Most levels an MSSM can have: 8192 = 2^13, and the level of single cells, less those of the roots.
+    LEVELS_MAX: uint = 12;
     /// [invocation] Work group of passes over lists and triangles.
     GROUP_SIZE: uint = 64;
     /// [work group] Lists longer than this many groups wrap into a second dispatch dimension, since

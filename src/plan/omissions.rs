@@ -1,5 +1,6 @@
 //! What a plan leaves out, and why.
 
+use super::memory::mssm_levels;
 use super::{Omission, Outcome, Plan};
 use crate::shot::{Shot, Technique};
 use crate::technique::Work;
@@ -101,11 +102,11 @@ impl Plan {
                 "a packet is a single pixel",
             );
         }
-        let wanted = (self.map.max(2) - 1).ilog2() + 2;
+        let wanted = mssm_levels(self.map);
         if recipe.mssm && self.levels < wanted {
             self.omit(
                 format!("{name}: mssm levels {} to {}", self.levels, wanted - 1),
-                "the device's largest image does not hold them; larger kernels start from several nodes",
+                "the device's largest image does not hold them; larger kernels start from more roots",
             );
         }
     }
