@@ -28,13 +28,13 @@ const int REFINEMENTS = 4;
 // kernel of its own, for bounds do not tell it from an occluder: uphill it comes nearer to the light.
 const int SAMPLED_SIDE = 2;
 
-// Whether a kernel is so small, and no sample in it passes the receiver's limit.
+// Whether a kernel is so small, and no sample in it occludes.
 bool nothing_occludes(Receiver receiver, Cells cells) {
     if (any(greaterThan(cells.last - cells.first, ivec2(SAMPLED_SIDE - 1)))) return false;
     uint occluding = 0u;
     for (int y = cells.first.y; y <= cells.last.y + 1; ++y)
         for (int x = cells.first.x; x <= cells.last.x + 1; ++x)
-            occluding += uint(texelFetch(shadow_map, ivec2(x, y), 0).x > limit_at(receiver, vec2(x, y)));
+            occluding += uint(occludes(receiver, vec2(x, y), texelFetch(shadow_map, ivec2(x, y), 0).x));
     return occluding == 0u;
 }
 

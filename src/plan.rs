@@ -3,22 +3,24 @@
 
 mod camera;
 mod host;
+mod maps;
 mod memory;
 mod omissions;
+mod passes;
 mod survey;
 mod text;
 mod views;
 
 use std::sync::Arc;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
-use crate::shared::{self, LEVELS_MAX, ROUNDS_MAX, SECTOR_STEPS, View};
+use crate::shared::{self, SECTOR_STEPS, View};
 use crate::shot::{Settings, Shot};
 use crate::technique::{self, Recipe};
 use camera::Frustum;
-use memory::{Inventory, mssm_levels};
+use memory::Inventory;
 use survey::{Survey, survey};
 
 pub use host::{HostFrame, plan_for_host};
@@ -289,129 +291,8 @@ impl Plan {
         });
     }
 
-    fn size_map(&mut self, settings: &Settings, limits: &Limits) -> Result<()> {
-        if self.views().next().is_none() {
-            return Ok(());
-        }
-        let side = settings.map;
-        if side > limits.image_side {
-            return Err(Error::Unsupported(format!(
-                "a map of {side} texels is more than the device's {}; choose a smaller --map",
-                limits.image_side
-            )));
-        }
-        self.map = side;
-        if self.needs(|recipe| recipe.mssm) {
-            let level_bytes = u64::from(side) * u64::from(side) * self.mssm_texel_bytes();
-            let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
-            self.levels = mssm_levels(side).min(LEVELS_MAX).min(fitting as u32);
-            if self.levels == 0 {
-                return Err(Error::Unsupported(format!(
-                    "an MSSM level of {level_bytes} bytes is more than the device's largest image of {} bytes; \
-                     choose a smaller --map",
-                    limits.image_bytes
-                )));
-            }
-        }
-        let levels = self.levels;
-        for view in self.lights.iter_mut().flat_map(|light| &mut light.views) {
-            view.view.levels_max = levels.max(1);
-        }
-        Ok(())
-    }
-
     /// Whether some light's views need something of their recipe.
     pub fn needs(&self, test: impl Fn(&Recipe) -> bool) -> bool {
         self.lights.iter().any(|light| light.needs(&test))
-    }
-
-    /// [byte] Of a pair of bounds.
-    pub(crate) fn mssm_texel_bytes(&self) -> u64 {
-        u64::from(self.mssm_bits / 4)
-    }
-
-    /// [level] Of the hierarchical shadow map, from 2×2 texels to a single node.
-    pub fn hsm_levels(&self) -> u32 {
-        self.map.next_power_of_two().ilog2()
-    }
-
-    /// [dispatch] In how many rounds a list is worked off at most.
-    pub fn rounds(&self, recipe: &Recipe) -> u32 {
-        // Nodes and edges of a cell, where no cell is passed by and neighbours differ in all that they find.
-        const TURNS_PER_CELL: u64 = 8;
-        let cells = u64::from(self.map) * u64::from(self.map) * u64::from(recipe.layers.max(1));
-        let rounds = (cells * TURNS_PER_CELL).div_ceil(self.loop_turns.into());
-        rounds.clamp(1, ROUNDS_MAX.into()) as u32
-    }
-
-    fn list_passes(&mut self, retained: bool) {
-        let mut passes = Vec::new();
-        let mut add = |name, count| {
-            if count > 0 {
-                match passes.iter_mut().find(|(known, _)| *known == name) {
-                    Some((_, known)) => *known += count,
-                    None => passes.push((name, count)),
-                }
-            }
-        };
-        match self.front {
-            Front::Drawn => add("gbuffer", 1),
-            Front::Imported => {
-                add("update", 1);
-                add("import_surface", 1);
-            }
-        }
-        if self.casters == Casters::Gathered {
-            add("gather", 1);
-        }
-        if self.views().next().is_some() {
-            add("clear_fits", u32::from(!retained));
-            add("clear_lists", u32::from(self.needs(Recipe::has_lists)));
-        }
-        for light in &self.lights {
-            let count = light.views.len() as u32;
-            add("clear_occlusion", u32::from(light.accumulates()));
-            for (name, times) in self.view_passes(light, retained) {
-                add(name, count * times);
-            }
-            add("resolve", 1);
-        }
-        add("shade", u32::from(self.outputs.picture));
-        add("export", u32::from(self.front == Front::Imported));
-        self.passes = passes;
-    }
-
-    /// What is recorded for each view of a light, in this order, and how often.
-    fn view_passes(&self, light: &LightPlan, retained: bool) -> Vec<(&'static str, u32)> {
-        let mut passes = Vec::new();
-        if !retained {
-            passes.extend(self.map_passes().iter().map(|name| (*name, 1)));
-            if light.recipe.mssm {
-                passes.push(("mssm", self.levels));
-            }
-            if light.recipe.hsm {
-                passes.push(("hsm", self.hsm_levels()));
-            }
-            let layers = light.recipe.layers;
-            if layers > 0 {
-                passes.extend([("keep_layer", layers), ("peel", layers - 1)]);
-            }
-        }
-        passes.extend(light.recipe.stages.iter().map(|stage| (stage.name, 1)));
-        passes
-    }
-
-    /// What is recorded for a view's shadow map.
-    fn map_passes(&self) -> &'static [&'static str] {
-        match self.casters {
-            Casters::Scene | Casters::Gathered => &["receivers", "casters", "fit", "shadow_map"],
-            Casters::DrawnByHost => &["receivers", "region", "fit", "projection", "shadow_map"],
-            Casters::Maps => &["receivers", "fit", "shadow_map"],
-        }
-    }
-
-    /// Whether the last frame's shadow map is kept.
-    pub fn is_retained(&self) -> bool {
-        self.views().next().is_some() && !self.passes.iter().any(|(name, _)| *name == "shadow_map")
     }
 }

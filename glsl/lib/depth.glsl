@@ -120,18 +120,10 @@ float ceiling_at(Receiver receiver, vec2 texel) {
     return ceiling;
 }
 
-// The limits at a cell's corners, counter-clockwise from (0, 0).
-vec4 limits_of(Receiver receiver, ivec2 cell) {
-    vec2 at = vec2(cell);
-    return vec4(limit_at(receiver, at), limit_at(receiver, at + vec2(1.0, 0.0)), limit_at(receiver, at + vec2(1.0, 1.0)),
-                limit_at(receiver, at + vec2(0.0, 1.0)));
-}
-
-// The ceilings there.
-vec4 ceilings_of(Receiver receiver, ivec2 cell) {
-    vec2 at = vec2(cell);
-    return vec4(ceiling_at(receiver, at), ceiling_at(receiver, at + vec2(1.0, 0.0)),
-                ceiling_at(receiver, at + vec2(1.0, 1.0)), ceiling_at(receiver, at + vec2(0.0, 1.0)));
+// Whether a sample occludes.
+bool occludes(Receiver receiver, vec2 texel, float depth) {
+    bool below = receiver.behind && depth > ceiling_at(receiver, texel);
+    return depth > limit_at(receiver, texel) && !below;
 }
 
 // The highest limit at samples first … last.

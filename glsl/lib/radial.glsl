@@ -45,8 +45,10 @@ float segment_beyond(View view, Receiver receiver, ivec2 cell, vec4 depths, uint
 
 // The corners of a cell that occlude.
 uint occluding(Receiver receiver, ivec2 cell, vec4 depths) {
-    uint mask = mask_of(depths, limits_of(receiver, cell));
-    return receiver.behind ? mask & ~mask_of(depths, ceilings_of(receiver, cell)) : mask;
+    vec2 at = vec2(cell);
+    return uint(occludes(receiver, at, depths.x)) | uint(occludes(receiver, at + vec2(1.0, 0.0), depths.y)) << 1
+         | uint(occludes(receiver, at + vec2(1.0, 1.0), depths.z)) << 2
+         | uint(occludes(receiver, at + vec2(0.0, 1.0), depths.w)) << 3;
 }
 
 // The samples at a cell's corners, counter-clockwise from (0, 0).

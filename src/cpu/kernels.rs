@@ -77,13 +77,13 @@ pub fn kernel_of(
     }
 }
 
-/// Whether a kernel is small, and no sample in it passes the receiver's limit.
+/// Whether a kernel is small, and no sample in it occludes.
 fn nothing_occludes(receiver: &Receiver, map: &ShadowMap, cells: &Cells) -> bool {
     let limit = receiver.limit();
     let is_small = (0..2).all(|axis| cells.last[axis] - cells.first[axis] < SAMPLED_SIDE);
     let samples = |axis: usize| cells.first[axis]..=cells.last[axis] + 1;
-    let passed = |x, y| map.depths[(y * map.size + x) as usize] > limit.at([x, y]);
-    is_small && !samples(1).any(|y| samples(0).any(|x| passed(x, y)))
+    let occludes = |x, y| limit.is_passed([x, y], map.depths[(y * map.size + x) as usize]);
+    is_small && !samples(1).any(|y| samples(0).any(|x| occludes(x, y)))
 }
 
 /// The highest limit at the samples of the cells' corners.

@@ -5,7 +5,7 @@ use super::{Casters, Front, Plan};
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::Scene;
-use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, ROOT_LEVELS, SECTOR_STEPS, View};
+use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, SECTOR_STEPS, View};
 use crate::shot::Settings;
 use crate::technique::{Recipe, Work};
 
@@ -23,12 +23,6 @@ const COPIED: [&str; 11] = [
     "visibility",
     "picture",
 ];
-
-/// [level] Of an MSSM over a map of `side` × `side` texels, from single cells to the roots of the largest kernel.
-pub(super) fn mssm_levels(side: u32) -> u32 {
-    let covering = side.next_power_of_two().ilog2();
-    (covering + 1).saturating_sub(ROOT_LEVELS).max(1)
-}
 
 /// How much of a scene there is, or may be.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,6 +1,6 @@
 //! What a plan leaves out, and why.
 
-use super::memory::mssm_levels;
+use super::maps::mssm_levels;
 use super::{Omission, Outcome, Plan};
 use crate::shot::{Shot, Technique};
 use crate::technique::Work;
@@ -31,9 +31,13 @@ impl Plan {
         if !self.outputs.picture {
             self.omit("shade", "only visibility is asked for");
         }
-        if retained {
+        let kept = self.lights.iter().find(|light| !light.views.is_empty());
+        if let Some(light) = kept.filter(|_| retained) {
+            let names: Vec<&str> = (self.map_passes(light).iter())
+                .map(|(name, _)| *name)
+                .collect();
             self.omit(
-                "receivers, casters, fit, shadow_map, mssm",
+                names.join(", "),
                 "nothing that the view depends on has changed since the last frame",
             );
         }

@@ -301,6 +301,7 @@ fn judge(subject: &Subject, renderer: &mut Renderer) -> Result<(Errors, Pictures
     let metrics = compare(&visibility, truth, Some(&subject.facing))?;
     let errors = Errors {
         metrics,
+        mae_shadow_all: Some(compare(&visibility, truth, None)?.mae_shadow),
         flip: compare_pictures(&picture, &ideal)?.0.flip,
         flicker: None,
     };

@@ -106,6 +106,10 @@ pub struct Measured {
 pub struct Errors {
     #[serde(flatten)]
     pub metrics: Metrics,
+    /// Mean absolute error over all shadow pixels, those too that face a part of the light only; None in runs of older
+    /// versions.
+    #[serde(default)]
+    pub mae_shadow_all: Option<f64>,
     /// [0, 1] Mean FLIP of the shaded picture.
     pub flip: f64,
     /// See `flicker`; None unless asked for.

@@ -4,6 +4,7 @@
 //! finite or beyond [0, 1], pixels that stand out from all their neighbours, and how far the image is off.
 
 mod cases;
+mod stage;
 mod twin;
 
 use std::sync::Arc;
@@ -21,7 +22,8 @@ use crate::plan::Outputs;
 use crate::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use crate::shot::{Settings, Shot};
 
-pub use cases::{Case, cases};
+pub use cases::cases;
+pub use stage::Case;
 
 /// Rays per pixel of the truth.
 const SAMPLES: u32 = 256;

@@ -25,15 +25,11 @@ pub(super) const COLUMNS: &[Column] = &[
     }),
     ("mae", |run| error(run, |m| m.mae)),
     ("rmse", |run| error(run, |m| m.rmse)),
-    ("flip", |run| of(run, |m| format!("{:.6}", m.errors.flip))),
-    ("flicker", |run| {
-        of(run, |m| {
-            let flicker = m.errors.flicker;
-            flicker
-                .map(|value| format!("{value:.6}"))
-                .unwrap_or_default()
-        })
+    ("mae_shadow_all", |run| {
+        of(run, |m| maybe(m.errors.mae_shadow_all))
     }),
+    ("flip", |run| of(run, |m| format!("{:.6}", m.errors.flip))),
+    ("flicker", |run| of(run, |m| maybe(m.errors.flicker))),
     ("shadow_pixels", |run| {
         of(run, |m| m.errors.metrics.shadow_pixels.to_string())
     }),
@@ -64,6 +60,10 @@ pub(super) const COLUMNS: &[Column] = &[
         Outcome::Measured(_) => String::new(),
     }),
 ];
+
+fn maybe(value: Option<f64>) -> String {
+    value.map(|value| format!("{value:.6}")).unwrap_or_default()
+}
 
 fn of(run: &Run, value: impl Fn(&Measured) -> String) -> String {
     run.measured().map(value).unwrap_or_default()

@@ -41,6 +41,7 @@ pub fn run(shot: &str, technique: Technique, ms: f64, error: f64) -> Run {
         resources: BTreeMap::new(),
         errors: Errors {
             metrics,
+            mae_shadow_all: Some(error),
             flip: error,
             flicker: None,
         },

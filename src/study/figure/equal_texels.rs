@@ -33,6 +33,8 @@ pub const EQUAL_TEXELS: Experiment = Experiment {
            512x512 texels in all as S = 1, 2, 4 and 8; with the pruning by the light's footprint",
     missing: "",
     differs: "the prototype had other models and no pruning by the light's footprint, which leaves one view less to visit; \
+              it compared with the receiver's depth alone, so that a single view erred 3 to 5 times as much where \
+              surfaces are tilted; \
               once texels are coarser than what casts, their bias and their width are what is wrong, and more views \
               of coarser texels err more",
     abscissa: "S",

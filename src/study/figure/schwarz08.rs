@@ -49,7 +49,8 @@ pub const TABLE1: Experiment = Experiment {
            itself here; stored_mib is what is allocated beside it",
     missing: "the YSM, which does not exist here yet",
     differs: "a CPU driver's caches see other costs than a GPU's memory, and it builds the small upper levels of an \
-              HSM one after the other for little more than their start, which weighs on small maps",
+              HSM one after the other for little more than their start, which weighs on small maps; the MSSM ends two \
+              levels below the one that covers the map",
     abscissa: "map",
     columns: &[BUILD_TIME, BYTES, STORED, ERROR_ASIDE],
     frames: 15,

@@ -55,7 +55,8 @@ pub const FIG8: Experiment = Experiment {
            view, no pruning by the light's footprint; counted by the device",
     missing: "",
     differs: "the scene is another one, and kernels grow with map and light: the smaller they are, the less there is \
-              to prune",
+              to prune; contours tell ground uphill from occluders sample by sample, where the paper's depth test takes \
+              it for one",
     abscissa: "light_size",
     columns: &[SAMPLES, PLACES, ERROR_ASIDE],
     frames: 1,

@@ -85,7 +85,8 @@ pub const FIG13: Experiment = Experiment {
     here: "the built-in knot under square lights of the proportions of figure 9, 320x256 pixels, 256x256 map, one view",
     missing: "packets without the hierarchy: packets walk the MSSM here, so the hierarchy is tried on single pixels",
     differs: "on a CPU driver eight pixels side by side share a walk's instructions anyway, and its lookups are \
-              no slower than its sums; kernels of small maps have less to skip",
+              no slower than its sums; kernels of small maps have less to skip; contours tell ground uphill from \
+              occluders sample by sample, where the paper's depth test takes it for one",
     abscissa: "light_size",
     columns: &[VISIBILITY_TIME, TIME_ASIDE, ERROR_ASIDE],
     frames: 15,
