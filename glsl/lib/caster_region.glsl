@@ -31,10 +31,15 @@ vec4 slopes_to(Box light, vec3 receiver) {
 
 const uint PLANE_COUNT = 11u;
 
+// By how much the region is opened, relative to the coordinates' magnitude: a point of the light and a
+// single receiver span a line, of which rounding would leave nothing.
+const float REGION_ROUNDING = 2e-6;
+
 // Signed distance (up to a factor) of a point to each of the region's planes, ≥ 0 inside: four slopes,
 // four widest tangents, behind the farthest receiver, behind the light plane, and at the eye.
 float[PLANE_COUNT] plane_distances(View view, Box light, vec4 slopes, float depth_max, vec3 p) {
-    vec4 open = vec4(light.upper.xy, -light.lower.xy) + slopes * (p.z - light.lower.z) - vec4(p.xy, -p.xy);
+    vec4 border = vec4(light.upper.xy, -light.lower.xy) + slopes * (p.z - light.lower.z);
+    vec4 open = border - vec4(p.xy, -p.xy) + REGION_ROUNDING * (abs(border) + abs(p.xyxy));
     float widest = TANGENT_MAX * p.z;
     float in_light = p.x * dot(view.light_n, view.right) + p.y * dot(view.light_n, view.up)
                    + p.z * dot(view.light_n, view.forward);
