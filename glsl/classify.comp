@@ -19,6 +19,7 @@ layout(binding = 7, scalar) writeonly buffer Pixels { uint pixels[]; };
 layout(binding = 8, scalar) readonly buffer CostsBlock { Costs costs; };
 layout(binding = 9, scalar) buffer CountersBlock { Counters counters; };
 layout(binding = 10, scalar) buffer ListsBlock { Lists lists[]; };
+layout(binding = 11, scalar) buffer Rounds { Round rounds[]; };
 #include "lists.glsl"
 
 // T_d of [Yang09 §4.3].

@@ -32,6 +32,7 @@ layout(binding = 12, scalar) buffer CountersBlock { Counters counters; };
 layout(binding = 13, scalar) buffer ListsBlock { Lists lists[]; };
 layout(binding = 14, scalar) buffer Partial { float partial[]; };
 layout(binding = 15, scalar) buffer ProgressBlock { Progress progress[]; };
+layout(binding = 16, scalar) buffer Rounds { Round rounds[]; };
 #include "lists.glsl"
 #include "radial.glsl"
 
@@ -325,8 +326,8 @@ void conclude(View view, uint slot) {
 
 // The next round goes on with this entry.
 void put_off(uint entry, uint group) {
-    if (PIXELWISE) REACH(lists[push.index].pixel_groups[push.level + 1u], group)
-    else REACH(lists[push.index].packet_groups[push.level + 1u], group)
+    if (PIXELWISE) REACH(rounds[at_round(push.level + 1u)].pixel_groups, group)
+    else REACH(rounds[at_round(push.level + 1u)].packet_groups, group)
 }
 
 void count(bool reprocessed) {

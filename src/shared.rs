@@ -101,8 +101,6 @@ shared_constants! {
     /// [work group] Lists longer than this many groups wrap into a second dispatch dimension, since
     /// a device may allow no more than 65535 groups in one.
     GROUPS_PER_ROW: uint = 32768;
-    /// [dispatch] Most rounds in which a list is worked off one after the other.
-    ROUNDS_MAX: uint = 32;
     /// `Progress::next` of an entry that is finished.
     FINISHED: uint = 0x7fffffff;
     /// [pixel] Side of the work group of passes over the image and of the MSSM's.
@@ -273,11 +271,15 @@ shared! {
         unfinished: uint,
     }
 
-    /// Lengths of a view's lists and the dispatches that work them off. All zero at the start of a frame.
+    /// The dispatches of a view's lists in a round. All zero at the start of a frame.
+    struct Round {
+        /// VkDispatchIndirectCommand of each list.
+        packet_groups: uvec3,
+        pixel_groups: uvec3,
+    }
+
+    /// Lengths of a view's lists. All zero at the start of a frame.
     struct Lists {
-        /// VkDispatchIndirectCommand of each list, for each round.
-        packet_groups: uvec3 [ROUNDS_MAX as usize],
-        pixel_groups: uvec3 [ROUNDS_MAX as usize],
         packet_count: uint,
         pixel_count: uint,
     }

@@ -26,6 +26,11 @@ pub struct Stage {
     pub work: Work,
 }
 
+/// [turn] Of a scan for each cell: the cell, what is found in it, and what neighbours find that differ in all of it.
+const TURNS_OF_SCANS: u32 = 8;
+/// [turn] Of a walk through the MSSM, which passes most cells by.
+const TURNS_OF_WALKS: u32 = 4;
+
 /// What a stage is dispatched over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Work {
@@ -52,6 +57,8 @@ pub struct Recipe {
     pub layers: u32,
     /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.
     pub words: u32,
+    /// [turn] Of loops for each cell of the map, at most, where a driver bounds them.
+    pub turns: u32,
     pub stages: Vec<Stage>,
 }
 
@@ -82,6 +89,7 @@ impl Recipe {
         Self {
             mssm: true,
             words: 1,
+            turns: TURNS_OF_SCANS,
             stages: vec![KERNELS, CLASSIFY, stage],
             ..Self::default()
         }

@@ -1,6 +1,6 @@
 // The pixel of the pixel list that an invocation works on. Needs the bindings `frame`, `views`, `fits`,
-// `position_world`, `normal_world`, `kernels`, `lists`, `pixels`, `shadow_map`, `layers`, `occlusion`, `progress` and
-// `counters`.
+// `position_world`, `normal_world`, `kernels`, `lists`, `rounds`, `pixels`, `shadow_map`, `layers`, `occlusion`, `progress`
+// and `counters`.
 
 #include "rounds.glsl"
 
@@ -80,7 +80,7 @@ uint next_number(Listed listed) { return is_first_round() ? 0u : progress[listed
 // fails. Returns whether the pixel is finished.
 bool close_round(Listed listed, bool more, Progress next) {
     bool put_by = more && !is_last_round();
-    if (put_by) REACH(lists[push.index].pixel_groups[push.level + 1u], listed.entry / GROUP_SIZE)
+    if (put_by) REACH(rounds[at_round(push.level + 1u)].pixel_groups, listed.entry / GROUP_SIZE)
     if (more && !put_by) atomicAdd(fits[push.index].unfinished, 1u);
     if (!put_by) next.next = FINISHED;
     if (ROUNDS > 1u) progress[listed.entry] = next;

@@ -1,5 +1,5 @@
 // Appends to the lists of packets and pixels; a list's length and the dispatches that work it off grow
-// together. Needs the bindings `lists`, `packets` and `pixels`.
+// together. Needs the bindings `lists`, `rounds`, `packets` and `pixels`.
 
 #include "rounds.glsl"
 
@@ -13,11 +13,11 @@ uint packets_per_group() { return LANES && !PIXELWISE ? GROUP_SIZE / (PACKET_WID
 void append_packet(Packet packet) {
     uint at = atomicAdd(lists[push.index].packet_count, 1u);
     packets[at] = packet;
-    if (at % packets_per_group() == 0u) REACH(lists[push.index].packet_groups[0], at / packets_per_group())
+    if (at % packets_per_group() == 0u) REACH(rounds[at_round(0u)].packet_groups, at / packets_per_group())
 }
 
 void append_pixel(uint pixel) {
     uint at = atomicAdd(lists[push.index].pixel_count, 1u);
     pixels[at] = pixel;
-    if (at % GROUP_SIZE == 0u) REACH(lists[push.index].pixel_groups[0], at / GROUP_SIZE)
+    if (at % GROUP_SIZE == 0u) REACH(rounds[at_round(0u)].pixel_groups, at / GROUP_SIZE)
 }

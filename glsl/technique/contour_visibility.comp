@@ -27,6 +27,7 @@ layout(binding = 11, scalar) buffer ListsBlock { Lists lists[]; };
 layout(binding = 12, scalar) readonly buffer Pixels { uint pixels[]; };
 layout(binding = 13, scalar) buffer Partial { float partial[]; };
 layout(binding = 14, scalar) buffer ProgressBlock { Progress progress[]; };
+layout(binding = 15, scalar) buffer Rounds { Round rounds[]; };
 #include "radial.glsl"
 #include "listed.glsl"
 #include "flat_contour.glsl"

@@ -31,6 +31,7 @@ layout(binding = 12, scalar) readonly buffer Pixels { uint pixels[]; };
 layout(binding = 13, scalar) buffer Partial { float partial[]; };
 layout(binding = 14, scalar) buffer ProgressBlock { Progress progress[]; };
 layout(binding = 15) uniform texture2DArray hsm;
+layout(binding = 16, scalar) buffer Rounds { Round rounds[]; };
 #include "radial.glsl"
 #include "listed.glsl"
 #include "micropatch.glsl"

@@ -3,9 +3,8 @@
 use super::Plan;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
-use crate::shared::{LEVELS_MAX, ROOT_LEVELS, ROUNDS_MAX};
+use crate::shared::{LEVELS_MAX, ROOT_LEVELS};
 use crate::shot::Settings;
-use crate::technique::Recipe;
 
 /// [level] Of an MSSM over a map of `side` × `side` texels, from single cells to the roots of the largest kernel.
 pub(super) fn mssm_levels(side: u32) -> u32 {
@@ -56,11 +55,14 @@ impl Plan {
     }
 
     /// [dispatch] In how many rounds a list is worked off at most.
-    pub fn rounds(&self, recipe: &Recipe) -> u32 {
-        // Nodes and edges of a cell, where no cell is passed by and neighbours differ in all that they find.
-        const TURNS_PER_CELL: u64 = 8;
-        let cells = u64::from(self.map) * u64::from(self.map) * u64::from(recipe.layers.max(1));
-        let rounds = (cells * TURNS_PER_CELL).div_ceil(self.loop_turns.into());
-        rounds.clamp(1, ROUNDS_MAX.into()) as u32
+    pub fn rounds(&self) -> u32 {
+        let recipes = self.lights.iter().map(|light| &light.recipe);
+        let per_cell = recipes
+            .map(|recipe| recipe.turns * recipe.layers.max(1))
+            .max();
+        let turns = u64::from(self.map) * u64::from(self.map) * u64::from(per_cell.unwrap_or(0));
+        turns
+            .div_ceil(self.loop_turns.into())
+            .clamp(1, u32::MAX.into()) as u32
     }
 }

@@ -5,7 +5,7 @@ use super::{Casters, Front, Plan};
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::Scene;
-use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, SECTOR_STEPS, View};
+use crate::shared::{self, Fit, Kernel, Lists, Packet, Progress, Round, SECTOR_STEPS, View};
 use crate::shot::Settings;
 use crate::technique::{Recipe, Work};
 
@@ -58,13 +58,14 @@ impl Plan {
         let views = self.views().count() as u64;
         let tables = self.views().filter(|view| view.sectors.is_some()).count() as u64;
         let any = |test: fn(&Recipe) -> bool| self.needs(test);
+        let rounds = self.rounds();
         let recipes = || self.lights.iter().filter(|light| !light.views.is_empty());
         let layers = recipes()
             .map(|light| light.recipe.layers)
             .max()
             .unwrap_or(0);
         let words = recipes()
-            .filter(|light| self.rounds(&light.recipe) > 1)
+            .filter(|_| rounds > 1)
             .map(|light| light.recipe.words)
             .max()
             .unwrap_or(0);
@@ -166,6 +167,14 @@ impl Plan {
                 "lists",
                 if any(Recipe::has_lists) {
                     views * size_of::<Lists>() as u64
+                } else {
+                    0
+                },
+            ),
+            (
+                "rounds",
+                if any(Recipe::has_lists) {
+                    views * u64::from(rounds) * size_of::<Round>() as u64
                 } else {
                     0
                 },

@@ -89,6 +89,7 @@ impl Chain {
             }
             if plan.needs(Recipe::has_lists) {
                 commands.clear("clear_lists", resources.buffer("lists")?);
+                commands.clear("clear_rounds", resources.buffer("rounds")?);
             }
         }
         for (index, light) in plan.lights.iter().enumerate() {

@@ -58,6 +58,7 @@ fn create_common(gpu: &Arc<Gpu>, plan: &Plan, costs: shared::Costs) -> Result<Re
         "occlusion",
         "fits",
         "lists",
+        "rounds",
         "partial",
         "progress",
         "visibility",

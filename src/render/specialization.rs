@@ -38,7 +38,7 @@ pub fn of_view(
         (9, u32::from(plan.textured)),
         (10, held),
         (11, plan.loop_turns),
-        (12, plan.rounds(recipe)),
+        (12, plan.rounds()),
         (13, recipe.layers.max(1)),
         (15, u32::from(gap_filling)),
         (16, u32::from(contours)),

@@ -9,7 +9,7 @@ use crate::gpu::{
     Sources, Specialization,
 };
 use crate::plan::{Casters, Plan, Variant};
-use crate::shared::{Fit, GROUP_SIZE, Lists, Push, TILE_SIZE};
+use crate::shared::{Fit, GROUP_SIZE, Push, Round, TILE_SIZE};
 use crate::shot::Settings;
 use crate::technique::{Recipe, Stage, Work};
 
@@ -199,7 +199,7 @@ impl ViewPasses {
             hsm: structure(recipe.hsm, "hsm", "hsm.comp")?,
             stages: recipe.stages.iter().map(stage).collect::<Result<_>>()?,
             layers: recipe.layers,
-            rounds: plan.rounds(recipe),
+            rounds: plan.rounds(),
         })
     }
 
@@ -302,12 +302,13 @@ impl ViewPasses {
         resources: &Resources,
         index: u32,
     ) -> Result<()> {
-        let (fits, lists) = (resources.buffer("fits")?, resources.buffer("lists")?);
+        let (fits, rounds) = (resources.buffer("fits")?, resources.buffer("rounds")?);
         for (stage, pass) in &self.stages {
             // Lists are worked off in rounds, each of which finds its own groups.
             let in_list = |offset: usize, round: u32| {
-                let offset = offset + round as usize * size_of::<[u32; 3]>();
-                Groups::Indirect(lists, in_lists(index, offset))
+                let first = index as usize * self.rounds as usize;
+                let offset = (first + round as usize) * size_of::<Round>() + offset;
+                Groups::Indirect(rounds, offset as u64)
             };
             let groups = |round| match stage.work {
                 Work::Pixels => Groups::Direct(tiles(plan)),
@@ -317,8 +318,8 @@ impl ViewPasses {
                 Work::Packets => {
                     Groups::Indirect(fits, in_fit(index, offset_of!(Fit, classify_groups)))
                 }
-                Work::PacketList => in_list(offset_of!(Lists, packet_groups), round),
-                Work::PixelList => in_list(offset_of!(Lists, pixel_groups), round),
+                Work::PacketList => in_list(offset_of!(Round, packet_groups), round),
+                Work::PixelList => in_list(offset_of!(Round, pixel_groups), round),
             };
             let rounds = match stage.work {
                 Work::PacketList | Work::PixelList => self.rounds,
@@ -351,8 +352,4 @@ pub fn tiles(plan: &Plan) -> [u32; 3] {
 
 fn in_fit(index: u32, offset: usize) -> u64 {
     (index as usize * size_of::<Fit>() + offset) as u64
-}
-
-fn in_lists(index: u32, offset: usize) -> u64 {
-    (index as usize * size_of::<Lists>() + offset) as u64
 }

@@ -6,7 +6,7 @@
 //! DEVIATION [Yang09]: samples below the receiver's plane do not occlude (`limit_at`), so that tilted surfaces are no
 //! occluders of themselves.
 
-use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, Work};
+use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, TURNS_OF_WALKS, Work};
 use crate::shot::Settings;
 
 const PACKETS: Stage = Stage {
@@ -25,6 +25,7 @@ pub fn recipe(settings: &Settings) -> Recipe {
     Recipe {
         mssm: true,
         words: 1,
+        turns: TURNS_OF_WALKS,
         stages,
         ..Recipe::default()
     }

@@ -31,7 +31,7 @@ pub struct Args {
     /// Also maps of 4096 and 8192 texels
     #[arg(long)]
     large: bool,
-    /// A row for each technique and case
+    /// A row for each technique and case, written case by case
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -48,11 +48,16 @@ pub fn run(args: &Args) -> Result<()> {
         check_writable(file)?;
     }
     let findings = args.device.with_device(|gpu| measure(args, gpu))?;
-    if let Some(file) = &args.output {
-        let table = csv(&findings)?;
-        write_atomically(file, |out| out.write_all(table.as_bytes()))?;
-    }
     print(&summary(&findings))
+}
+
+/// Writes the rows so far, so that a run that is interrupted leaves the cases that it has finished.
+fn save(args: &Args, findings: &[Finding]) -> Result<()> {
+    let Some(file) = &args.output else {
+        return Ok(());
+    };
+    let table = csv(findings)?;
+    write_atomically(file, |out| out.write_all(table.as_bytes()))
 }
 
 fn measure(args: &Args, gpu: &Arc<Gpu>) -> Result<Vec<Finding>> {
@@ -86,6 +91,7 @@ fn measure(args: &Args, gpu: &Arc<Gpu>) -> Result<Vec<Finding>> {
             findings.push(examine(gpu, case, &truth, &settings)?);
             bar.inc(1);
         }
+        save(args, &findings)?;
     }
     bar.finish_and_clear();
     Ok(findings)
