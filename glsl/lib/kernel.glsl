@@ -1,5 +1,8 @@
 // Kernels [GBP06, SS07; Yang09 eq. 1]: which dual cells can project onto the sub-light.
 
+// [texel] Farther than any map reaches from where a receiver falls.
+const float ENDLESS = 1e9;
+
 struct Cells {
     ivec2 first;
     ivec2 last;
@@ -19,13 +22,19 @@ Cells kernel_cells(View view, Receiver receiver, float depth_max) {
     if (OBLIQUE) {
         lower = vec2(0.0);
         upper = vec2(0.0);
+        bool unbounded = false;
         for (int i = 0; i < 4; ++i) {
             vec2 q = vec2((i & 1) == 0 ? view.extent.x : view.extent.z, (i & 2) == 0 ? view.extent.y : view.extent.w);
             vec3 offset = texel_offset(receiver, q, depth_max);
-            // The light's corner lies beyond the map's horizon: the kernel has no bound there.
-            vec2 dt = offset.z > 0.0 ? offset.xy : sign(offset.xy) * float(2u * view.map_size);
-            lower = min(lower, dt);
-            upper = max(upper, dt);
+            lower = min(lower, offset.xy);
+            upper = max(upper, offset.xy);
+            unbounded = unbounded || offset.z == 0.0;
+        }
+        // A part of the light lies beyond the map's horizon. Where the horizon cuts the light's border there is no
+        // bound, on either side that one of the corners is on.
+        if (unbounded) {
+            lower = ENDLESS * sign(lower);
+            upper = ENDLESS * sign(upper);
         }
     }
     int edge = int(view.map_size) - 2;

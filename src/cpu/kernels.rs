@@ -120,12 +120,16 @@ fn kernel_cells(view: &View, oblique: bool, receiver: &Receiver, depth_max: f32)
     }
 }
 
+/// [texel] Farther than any map reaches from where a receiver falls.
+const ENDLESS: f32 = 1e9;
+
 /// [texel] Box round t_p of what the corners of the light's box project to at depth d_p + `near_side`, where
 /// the map is not parallel to the light.
 fn reach_of_corners(view: &View, receiver: &Receiver, near_side: f32) -> (Vec2, Vec2) {
     let Receiver { ku, kv, b, .. } = *receiver;
     let (low, high) = extents(view);
     let (mut lower, mut upper) = (Vec2::ZERO, Vec2::ZERO);
+    let mut unbounded = false;
     let determinant = ku.x * kv.y - ku.y * kv.x;
     for q in [
         low,
@@ -135,15 +139,87 @@ fn reach_of_corners(view: &View, receiver: &Receiver, near_side: f32) -> (Vec2, 
     ] {
         let at = Vec2::new(q.x * kv.y - q.y * ku.y, q.y * ku.x - q.x * kv.x) / determinant;
         let share = 1.0 - b.dot(at);
-        let dt = if share > 1e-4 {
-            at * (near_side / share)
+        let beyond_horizon = share <= 1e-4;
+        let dt = if beyond_horizon {
+            at
         } else {
-            // Beyond the map's horizon: no bound.
-            let sign = |x: f32| if x == 0.0 { 0.0 } else { x.signum() };
-            Vec2::new(sign(at.x), sign(at.y)) * (2 * view.map_size) as f32
+            at * (near_side / share)
         };
         lower = lower.min(dt);
         upper = upper.max(dt);
+        unbounded |= beyond_horizon;
+    }
+    if unbounded {
+        let endless = |x: f32| if x == 0.0 { 0.0 } else { x.signum() * ENDLESS };
+        lower = Vec2::new(endless(lower.x), endless(lower.y));
+        upper = Vec2::new(endless(upper.x), endless(upper.y));
     }
     (lower, upper)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cpu::depth::project;
+    use crate::shared::Fit;
+
+    const MAP: u32 = 128;
+
+    /// The side face along u of a light round the origin that shines along z.
+    fn side_face(half_size: f32) -> View {
+        View {
+            right: [0.0, 1.0, 0.0],
+            up: [0.0, 0.0, 1.0],
+            forward: [1.0, 0.0, 0.0],
+            light_u: [1.0 / half_size, 0.0, 0.0],
+            light_v: [0.0, 1.0 / half_size, 0.0],
+            light_n: [0.0, 0.0, 1.0],
+            half_size: [half_size; 2],
+            extent: [-1.0, -1.0, 1.0, 1.0],
+            face: 1,
+            map_size: MAP,
+            ..View::default()
+        }
+    }
+
+    proptest! {
+        /// Wherever on a line from a receiver to the light an occluder stands, its cell is in the kernel, also where
+        /// the light reaches beyond the receiver and where the receiver falls far beside the map.
+        #[test]
+        fn kernels_of_side_faces_hold_what_lies_before_the_light(
+            half_size in 0.1f32..50.0,
+            receiver in prop::array::uniform3(0.1f32..1.0),
+            q in prop::array::uniform2(-1.0f32..1.0),
+            way in 0.01f32..0.99,
+            room in 0.02f32..0.5,
+            focal in 100f32..10_000.0,
+            at in prop::array::uniform2(2f32..120.0),
+        ) {
+            let view = side_face(half_size);
+            let receiver = Vec3::from(receiver) * Vec3::new(1.5 * half_size, half_size, 3.0);
+            let light = Vec3::new(q[0], q[1], 0.0) * half_size;
+            let occluder = receiver.lerp(light, way);
+            // Nearer to the map's eye than the receiver, or it could not occlude, and before it.
+            prop_assume!(occluder.x > 1e-3 * half_size && occluder.x < 0.99 * receiver.x);
+            let tangents = |p: Vec3| Vec2::new(p.y, p.z) / p.x;
+            let near = occluder.x * (1.0 - room);
+            let fit = Fit {
+                near,
+                focal: [focal; 2],
+                center: (Vec2::from(at) - focal * tangents(occluder)).into(),
+                ..Fit::default()
+            };
+            let projected = project(&view, &fit, true, receiver, -Vec3::Z);
+            let cells = kernel_cells(&view, true, &projected, 1.0);
+            for axis in 0..2 {
+                // The cell, give or take one for the rounding of places on the map.
+                let cell = at[axis] as i32;
+                prop_assert!(cells.first[axis] <= cell + 1 && cells.last[axis] >= cell - 1,
+                    "{at:?} is not in {:?} to {:?}", cells.first, cells.last);
+            }
+        }
+    }
 }
