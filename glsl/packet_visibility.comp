@@ -368,7 +368,8 @@ void main() {
             hold(view, fit, 0u, index);
             for (uint i = 0u; i < lane; ++i) speaks = speaks && !penumbra_pixel(packet, i, index);
         } else {
-            for (uint i = 0u; i < HELD; ++i) {
+            // Unrolled, it would be most of what drivers compile.
+            [[dont_unroll]] for (uint i = 0u; i < HELD; ++i) {
                 uint index;
                 is_held[i] = false;
                 if (penumbra_pixel(packet, i, index)) hold(view, fit, i, index);
