@@ -110,7 +110,7 @@ void main() {
     survey.kernel_depths = vec2(1e30, 0.0);
     survey.pixel_cost = 0.0;
     survey.behind = false;
-    for (uint i = 0u; i < size.x * size.y; ++i) {
+    [[dont_unroll]] for (uint i = 0u; i < size.x * size.y; ++i) {
         uvec2 pixel = at * size + uvec2(i % size.x, i / size.x);
         if (any(greaterThanEqual(pixel, frame.size))) continue;
         Kernel kernel = kernels[pixel.y * frame.size.x + pixel.x];
@@ -128,7 +128,7 @@ void main() {
         append_packet(survey.packet);
         return;
     }
-    for (uint i = 0u; i < size.x * size.y; ++i) {
+    [[dont_unroll]] for (uint i = 0u; i < size.x * size.y; ++i) {
         uvec2 pixel = at * size + uvec2(i % size.x, i / size.x);
         if (any(greaterThanEqual(pixel, frame.size))) continue;
         uint index = pixel.y * frame.size.x + pixel.x;
