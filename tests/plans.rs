@@ -178,14 +178,14 @@ fn limits_are_told_with_the_knob_to_turn() {
                 memory_bytes: 1 << 20,
                 ..LIMITS
             },
-            "the device has 1.0 MiB; choose a smaller --map or --size",
+            "the device has 1.0 MiB; choose a smaller --map or --size, or --mssm-bits 16",
         ),
         (
             Limits {
                 allowed_bytes: 1 << 20,
                 ..LIMITS
             },
-            "--max-memory allows 1.0 MiB; choose a smaller --map or --size, or raise --max-memory",
+            "--max-memory allows 1.0 MiB; choose a smaller --map or --size, or --mssm-bits 16, or raise --max-memory",
         ),
     ] {
         let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();

@@ -244,22 +244,22 @@ impl Plan {
         if peak <= most {
             return Ok(());
         }
-        let source = match limits.allowed_bytes < limits.memory_bytes {
-            true => "--max-memory allows",
-            false => "the device has",
-        };
         let largest = self.resources.iter().max_by_key(|(_, bytes)| *bytes);
         let (name, bytes) = largest.copied().unwrap_or_default();
+        let (source, raised) = match limits.allowed_bytes < limits.memory_bytes {
+            true => ("--max-memory allows", ", or raise --max-memory"),
+            false => ("the device has", ""),
+        };
+        let halved = match name == "mssm" && self.mssm_bits > 16 {
+            true => ", or --mssm-bits 16",
+            false => "",
+        };
         Err(Error::Unsupported(format!(
-            "the frame takes {} at its peak, {} of it for {name}, and {source} {}; choose a smaller --map or --size{}",
+            "the frame takes {} at its peak, {} of it for {name}, and {source} {}; \
+             choose a smaller --map or --size{halved}{raised}",
             human(peak),
             human(bytes),
             human(most),
-            if limits.allowed_bytes < limits.memory_bytes {
-                ", or raise --max-memory"
-            } else {
-                ""
-            }
         )))
     }
 }
