@@ -196,11 +196,13 @@ impl<'a> Commands<'a> {
         });
     }
 
-    /// Fills a buffer with zeros.
-    pub fn clear(&mut self, name: &'static str, buffer: &Buffer) {
+    /// Fills buffers with zeros.
+    pub fn clear(&mut self, name: &'static str, buffers: &[&Buffer]) {
         self.pass(name, |device, commands| {
-            // SAFETY: recording; the buffer is alive.
-            unsafe { device.cmd_fill_buffer(commands, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
+            for buffer in buffers {
+                // SAFETY: recording; the buffer is alive.
+                unsafe { device.cmd_fill_buffer(commands, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
+            }
         });
     }
 

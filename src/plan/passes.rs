@@ -27,7 +27,6 @@ impl Plan {
         if self.views().next().is_some() {
             add("clear_fits", u32::from(!retained));
             add("clear_lists", u32::from(self.needs(Recipe::has_lists)));
-            add("clear_rounds", u32::from(self.needs(Recipe::has_lists)));
         }
         for light in &self.lights {
             let count = light.views.len() as u32;

@@ -85,16 +85,16 @@ impl Chain {
         let retained = plan.is_retained();
         if plan.views().next().is_some() {
             if !retained {
-                commands.clear("clear_fits", resources.buffer("fits")?);
+                commands.clear("clear_fits", &[resources.buffer("fits")?]);
             }
             if plan.needs(Recipe::has_lists) {
-                commands.clear("clear_lists", resources.buffer("lists")?);
-                commands.clear("clear_rounds", resources.buffer("rounds")?);
+                let lists = [resources.buffer("lists")?, resources.buffer("rounds")?];
+                commands.clear("clear_lists", &lists);
             }
         }
         for (index, light) in plan.lights.iter().enumerate() {
             if light.accumulates() {
-                commands.clear("clear_occlusion", resources.buffer("occlusion")?);
+                commands.clear("clear_occlusion", &[resources.buffer("occlusion")?]);
             }
             let first = light.light.view_first;
             let views = first..first + light.light.view_count;
