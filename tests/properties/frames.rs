@@ -213,7 +213,7 @@ fn a_light_without_extent_casts_a_hard_shadow() {
 
 #[test]
 fn memory_does_not_depend_on_the_split() {
-    let per_view = ["views", "fits", "lists", "sectors"];
+    let per_view = ["views", "fits", "lists", "rounds", "sectors"];
     with_gpu(|gpu| {
         for name in SCENES {
             let bytes = [1, 2, 4, 8, 16].map(|split| {
