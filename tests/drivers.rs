@@ -9,9 +9,11 @@ use std::process::Command;
 use halfshade::image::{MAX_SAMPLES, read_exr};
 use program::{Folder, scenes};
 
-/// [visibility] Drivers place vertices on their grids of 1/256 texel each in their own way, which moves a contour by
+/// [pixel] Width and height of the images.
+const SIDE: usize = 32;
+/// [visibility] Drivers place vertices on grids of their own, of 1/16 texel or finer, which moves a contour by
 /// a texel here and there; a map of 64 texels has some ten of them across the light, so that a pixel may be off by
-/// a tenth, and hardly any is.
+/// a tenth. One in a hundred may be off by more: where folds and leaves are smaller than a pixel, no neighbour saw the same.
 const MOST: f32 = 0.1;
 const MEAN: f32 = 0.002;
 
@@ -24,7 +26,7 @@ fn visibility(folder: &Folder, scene: &str, environment: &[(&str, Option<&str>)]
         .arg(scenes().join(format!("{scene}.json")));
     program.args([
         "--size",
-        "32x32",
+        &format!("{SIDE}x{SIDE}"),
         "--map",
         "64",
         "--split",
@@ -69,32 +71,53 @@ fn the_width_of_subgroups_does_not_matter() {
     );
 }
 
+/// How far a value is from what the other image has in the pixel and the eight round it. Where a grid of 1/16 pixel
+/// (SwiftShader; lavapipe's is 1/256) moves a silhouette past a pixel's centre, it sees what its neighbour saw.
+fn apart(value: f32, other: &[f32], pixel: usize) -> f32 {
+    let (x, y) = ((pixel % SIDE) as isize, (pixel / SIDE) as isize);
+    let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+    let inside = around.filter(|&(x, y)| x.min(y) >= 0 && x.max(y) < SIDE as isize);
+    let values = inside.map(|(x, y)| other[y as usize * SIDE + x as usize]);
+    // A pixel without a surface, whose value is no number, bounds nothing.
+    let (least, most) = values.fold(
+        (f32::INFINITY, f32::NEG_INFINITY),
+        |(least, most), value| (least.min(value), most.max(value)),
+    );
+    (least - value).max(value - most).max(0.0)
+}
+
 /// The driver of this run, such as `tools/test.sh --driver` has chosen, against the system's own.
 #[test]
 fn drivers_agree() {
-    for scene in ["plate", "tree"] {
+    for scene in ["plate", "knot", "tree"] {
         let here = visibility(&Folder::new(), scene, &[]);
         let own = visibility(&Folder::new(), scene, &[("VK_DRIVER_FILES", None)]);
         let surfaces = |image: &[f32]| image.iter().filter(|value| !value.is_nan()).count();
-        let shared = here
+        let shared: Vec<usize> = (0..own.len())
+            .filter(|&pixel| !here[pixel].is_nan() && !own[pixel].is_nan())
+            .collect();
+        let apart: Vec<f32> = shared
             .iter()
-            .zip(&own)
-            .filter(|(a, b)| !a.is_nan() && !b.is_nan());
-        let apart: Vec<f32> = shared.map(|(a, b)| (a - b).abs()).collect();
+            .map(|&pixel| apart(here[pixel], &own, pixel))
+            .collect();
         // At silhouettes a pixel may see a surface on the one driver alone.
         let elsewhere = surfaces(&here).max(surfaces(&own)) - apart.len();
-        let most = apart.iter().copied().fold(0.0, f32::max);
-        let mean = apart.iter().sum::<f32>() / apart.len() as f32;
+        // One in a hundred may be off by more than the others.
+        let (near, far): (Vec<f32>, Vec<f32>) = apart.iter().partition(|&&apart| apart <= MOST);
+        let mean = near.iter().sum::<f32>() / near.len() as f32;
         println!(
-            "{scene}: {most:.1e} at most, {mean:.1e} on the mean, {elsewhere} pixels elsewhere"
+            "{scene}: {mean:.1e} on the mean, {} of {} by more than {MOST}, {elsewhere} pixels elsewhere",
+            far.len(),
+            apart.len()
         );
         assert!(
             elsewhere <= 10,
             "{scene}: {elsewhere} pixels see a surface on one driver alone"
         );
         assert!(
-            most <= MOST && mean <= MEAN,
-            "{scene}: {most} at most, {mean} on the mean"
+            far.len() * 100 <= apart.len() && mean <= MEAN,
+            "{scene}: {} by more than {MOST}, {mean} on the mean of the others",
+            far.len()
         );
     }
 }
