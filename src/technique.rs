@@ -26,11 +26,6 @@ pub struct Stage {
     pub work: Work,
 }
 
-/// [turn] Of a scan for each cell: the cell, what is found in it, and what neighbours find that differ in all of it.
-const TURNS_OF_SCANS: u32 = 8;
-/// [turn] Of a walk through the MSSM, which passes most cells by.
-const TURNS_OF_WALKS: u32 = 4;
-
 /// What a stage is dispatched over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Work {
@@ -125,6 +120,11 @@ pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
         _ => sub_light::parts(light, settings.split),
     }
 }
+
+/// [turn] Of a scan for each cell: the cell, what is found in it, and what neighbours find that differ in all of it.
+const TURNS_OF_SCANS: u32 = 8;
+/// [turn] Of a walk through the MSSM, which passes most cells by.
+const TURNS_OF_WALKS: u32 = 4;
 
 /// The kernels of all pixels, which back-projection techniques share [GBP06, SS07; Yang09 eq. 1].
 const KERNELS: Stage = Stage {

@@ -59,16 +59,18 @@ impl Plan {
         let tables = self.views().filter(|view| view.sectors.is_some()).count() as u64;
         let any = |test: fn(&Recipe) -> bool| self.needs(test);
         let rounds = self.rounds();
+        // Of packets and of pixels, a pair for each view.
+        let lists = if any(Recipe::has_lists) { views } else { 0 };
         let recipes = || self.lights.iter().filter(|light| !light.views.is_empty());
         let layers = recipes()
             .map(|light| light.recipe.layers)
             .max()
             .unwrap_or(0);
-        let words = recipes()
-            .filter(|_| rounds > 1)
-            .map(|light| light.recipe.words)
-            .max()
-            .unwrap_or(0);
+        let words = match rounds {
+            1 => None,
+            _ => recipes().map(|light| light.recipe.words).max(),
+        };
+        let words = words.unwrap_or(0);
         let grid = u64::from(self.size.0.div_ceil(settings.packet.0))
             * u64::from(self.size.1.div_ceil(settings.packet.1));
         // One for each pixel or for each lane of each packet.
@@ -163,21 +165,10 @@ impl Plan {
             ("occlusion", per_pixel(views > 0, 4)),
             ("views", views * size_of::<View>() as u64),
             ("fits", views * size_of::<Fit>() as u64),
-            (
-                "lists",
-                if any(Recipe::has_lists) {
-                    views * size_of::<Lists>() as u64
-                } else {
-                    0
-                },
-            ),
+            ("lists", lists * size_of::<Lists>() as u64),
             (
                 "rounds",
-                if any(Recipe::has_lists) {
-                    views * u64::from(rounds) * size_of::<Round>() as u64
-                } else {
-                    0
-                },
+                lists * u64::from(rounds) * size_of::<Round>() as u64,
             ),
             ("partial", pixels * 4 * u64::from(words)),
             ("progress", progress * size_of::<Progress>() as u64),
