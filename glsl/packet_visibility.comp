@@ -259,15 +259,20 @@ uint collect(View view, Packet packet, inout Cursor cursor, inout Edge batch[BAT
 void integrate(View view, Edge batch[BATCH], uint count) {
     for (uint slot = 0u; slot < held_end && count > 0u; ++slot) {
         Receiver receiver = receiver_of(slot);
-        // One by one, so that the sum does not depend on where batches and rounds end.
+        // One by one, so that the sum does not depend on where batches and rounds end; not unrolled, for most of what
+        // drivers compile is in here.
         float sum = beyond[slot];
-        [[unroll]] for (uint i = 0u; i < BATCH; ++i) {
-            float share = edge_beyond(view, receiver, batch[i]);
-            sum += i < count ? share : 0.0;
+        [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
+            Edge edge = batch[0];
+            [[unroll]] for (uint j = 1u; j < BATCH; ++j) {
+                edge.a = i == j ? batch[j].a : edge.a;
+                edge.b = i == j ? batch[j].b : edge.b;
+            }
+            sum += edge_beyond(view, receiver, edge);
         }
         beyond[slot] = sum;
     }
-    steps += HELD + 1u;
+    steps += subgroupMax(held_end) * (subgroupMax(count) + 1u) + 1u;
 }
 
 // Adds the next edge up for a single pixel: without the loops, which would cost more than they save.

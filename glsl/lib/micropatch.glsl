@@ -7,27 +7,11 @@ float area_of_boxes(View view, vec2 lower, vec2 upper) {
     return size.x * size.y;
 }
 
-// [half sizes²] The sub-light's area inside a box, for any sub-light.
-float area_in_box(View view, vec2 lower, vec2 upper) {
-    vec3 corners[4] = vec3[4](vec3(lower, 1.0), vec3(upper.x, lower.y, 1.0), vec3(upper, 1.0),
-                              vec3(lower.x, upper.y, 1.0));
-    // The centre is left of a side when it is on the box's side of it.
-    vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
+// [half sizes²] The sub-light's area inside a quadrangle of homogeneous light coordinates, counter-clockwise. sides: for
+// each side, from corner i to i + 1, +1 if the centre is left of it, else −1.
+float area_in_quadrangle(View view, vec3 corners[4], vec4 sides) {
     float area = all(greaterThan(sides, vec4(0.0))) ? view.area : 0.0;
     [[unroll]] for (int i = 0; i < 4; ++i) area -= area_beyond(view, corners[i], corners[(i + 1) & 3], sides[i]);
-    return area;
-}
-
-// [half sizes²] The sub-light's area that a quadrangle of map points (Δt, d), counter-clockwise, hides.
-float area_in_quadrangle(View view, Receiver receiver, vec2 lower, vec2 upper, vec4 depths) {
-    vec2 at[4] = vec2[4](lower, vec2(upper.x, lower.y), upper, vec2(lower.x, upper.y));
-    vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
-    float area = all(greaterThan(sides, vec4(0.0))) ? view.area : 0.0;
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-        int next = (i + 1) & 3;
-        area -= area_beyond(view, back_project(receiver, at[i], depths[i]), back_project(receiver, at[next], depths[next]),
-                            sides[i]);
-    }
     return area;
 }
 
@@ -39,19 +23,30 @@ float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
     vec2 lower = vec2(texel) - 0.5 - receiver.t;
     vec2 upper = lower + 1.0;
     vec2 neighbours = GAP_FILLING ? depths.yz : depths.xx;
-    float area = 0.0;
+    vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
+                      lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
+    vec3 corners[4];
     if (OBLIQUE) {
-        vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
-                          lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
         float corner = outer.x == depths.x ? outer.y : outer.x;
-        area = area_in_quadrangle(view, receiver, lower, upper, vec4(corner, outer.y, depths.x, outer.x));
+        corners[0] = back_project(receiver, lower, corner);
+        corners[1] = back_project(receiver, vec2(upper.x, lower.y), outer.y);
+        corners[2] = back_project(receiver, upper, depths.x);
+        corners[3] = back_project(receiver, vec2(lower.x, upper.y), outer.x);
     } else {
         vec2 scale = vec2(receiver.ku.x, receiver.kv.y);
-        vec2 reached = min(scale * lower / (depths.x - receiver.d), scale * lower / (neighbours - receiver.d));
-        vec2 far = scale * upper / (depths.x - receiver.d);
-        if (ROUND) area = area_in_box(view, reached, far);
-        else area = area_of_boxes(view, reached, far);
+        lower = min(scale * lower / (depths.x - receiver.d), scale * lower / (neighbours - receiver.d));
+        upper = scale * upper / (depths.x - receiver.d);
+        corners[0] = vec3(lower, 1.0);
+        corners[1] = vec3(upper.x, lower.y, 1.0);
+        corners[2] = vec3(upper, 1.0);
+        corners[3] = vec3(lower.x, upper.y, 1.0);
     }
+    // A box keeps its corners' signs when it is projected.
+    vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
+    // Called in one place: drivers inline it, and some take minutes for two.
+    float area = 0.0;
+    if (OBLIQUE || ROUND) area = area_in_quadrangle(view, corners, sides);
+    else area = area_of_boxes(view, lower, upper);
     return area;
 }
 
