@@ -195,10 +195,10 @@ fn half_plane_under_a_disc() {
     });
 }
 
-/// The error of an edge's place is a share of a texel, so it is of first order in the texel at least: eight
-/// times the map has an eighth of the error. A contour of midpoints lies now on one side of a slanting edge
-/// and now on the other; how much of that cancels differs from map to map, for which half as much is allowed
-/// on top.
+/// The error of an edge's place is a share of a texel, so it is of first order in the texel at least: twice, four and
+/// eight times the map have a half, a quarter and an eighth of the error. A contour of midpoints lies now on one side
+/// of a slanting edge and now on the other; how much of that cancels differs from map to map, for which half as much is
+/// allowed on top. (The third map may err less than the fourth where it happens to cancel nearly all.)
 #[test]
 fn the_error_shrinks_with_the_texel() {
     with_gpu(|gpu| {
@@ -217,14 +217,12 @@ fn the_error_shrinks_with_the_texel() {
                 measured.rms
             });
             println!("rms {errors:?}");
-            assert!(
-                errors[3] <= 1.5 * errors[0] / 8.0,
-                "no first order: {errors:?}"
-            );
-            assert!(
-                errors.is_sorted_by(|coarse, fine| coarse > fine),
-                "{errors:?}"
-            );
+            for (error, finer) in errors.iter().zip([1.0, 2.0, 4.0, 8.0]).skip(1) {
+                assert!(
+                    *error <= 1.5 * errors[0] / finer,
+                    "no first order: {errors:?}"
+                );
+            }
         }
     });
 }
