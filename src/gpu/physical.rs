@@ -21,6 +21,8 @@ pub struct DeviceInfo {
     pub vulkan: String,
     /// [invocation]
     pub subgroup_size: u32,
+    /// [bit] The rasteriser moves vertices onto a grid of 2^−n pixels: 4 at least.
+    pub subpixel_bits: u32,
     /// The device's UUID in hexadecimal digits: names what is stored per device.
     pub uuid: String,
     /// What it lacks; empty = it can run the engine.
@@ -61,6 +63,7 @@ pub(super) fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> 
             vk::api_version_patch(core.api_version)
         ),
         subgroup_size: v11.subgroup_size,
+        subpixel_bits: core.limits.sub_pixel_precision_bits,
         uuid: v11
             .device_uuid
             .iter()

@@ -128,9 +128,12 @@ fn receivers_beside_the_front_face_are_shadowed() {
             let image = visibility(gpu, &shot);
             let truth = traced(&shot, 256);
             let mut errors = Vec::new();
-            let (mut beside, mut dark) = (0, 0);
+            let (mut beside, mut dark, mut elsewhere) = (0, 0, 0u32);
             for (index, (&value, &truth)) in image.iter().zip(&truth).enumerate() {
-                assert_eq!(value.is_nan(), truth.is_nan(), "pixel {index}");
+                if value.is_nan() != truth.is_nan() {
+                    elsewhere += 1;
+                    continue;
+                }
                 if truth < 1.0 {
                     errors.push((value - truth).abs());
                     beside += 1;
@@ -140,6 +143,12 @@ fn receivers_beside_the_front_face_are_shadowed() {
                     assert!(value < 0.25, "pixel {index} is lit: {value}");
                 }
             }
+            // Of some 200 pixels on the borders of floor and wall, the share whose centres are so near to the edge that
+            // the rasteriser's grid decides: none on lavapipe.
+            assert!(
+                f64::from(elsewhere) <= 200.0 * raster_grid(gpu),
+                "{elsewhere} pixels see a surface that rays do not, or none"
+            );
             let mean = errors.iter().sum::<f32>() / errors.len() as f32;
             println!(
                 "split {split}: mean error {mean:.1e} over {beside} pixels, {dark} of them dark"

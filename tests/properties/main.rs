@@ -25,8 +25,8 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use support::{
-    Image, SCENES, Triangles, camera, disc_light, load, positions, rectangle, rectangle_light,
-    render, renderer, same_bits, shot, visibility, with_gpu,
+    Image, SCENES, Triangles, camera, disc_light, load, positions, raster_grid, rectangle,
+    rectangle_light, render, renderer, same_bits, shot, visibility, with_gpu,
 };
 
 const LIGHT: DVec3 = DVec3::new(0.1, 3.0, -0.05);

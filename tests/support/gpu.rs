@@ -32,6 +32,11 @@ pub fn with_gpu<T>(test: impl FnOnce(&Arc<Gpu>) -> T) -> T {
     result
 }
 
+/// [pixel or texel] The grid that the rasteriser moves vertices onto: lavapipe's is 1/256, SwiftShader's 1/16.
+pub fn raster_grid(gpu: &Gpu) -> f64 {
+    0.5f64.powi(gpu.info.subpixel_bits as i32)
+}
+
 /// What a frame of one light left behind.
 pub struct Image {
     pub visibility: Vec<f32>,
