@@ -4,15 +4,22 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use super::support::{self, SCENES, load, with_gpu};
+use halfshade::gpu::Gpu;
+
+use super::support::{self, SCENES, load, raster_grid, with_gpu};
 
 /// [pixel]
 const SIDE: usize = 32;
 /// [block] In each direction.
 const BLOCKS: usize = 4;
 /// [visibility] Drivers may rasterize a texel on an edge differently, which in a hard shadow moves a block's 64 pixels
-/// by a few.
-const TOLERANCE: f32 = 0.05;
+/// by a few. A grid of 1/16 pixel moves an edge of the picture past a row of pixels' centres in one block of sixteen:
+/// 8 of 64 more (measured 0.10 on the colonnade, 0.15 on the bars of the grid).
+fn tolerance(gpu: &Gpu) -> f32 {
+    const FEW: f32 = 0.05;
+    let coarse = raster_grid(gpu) > 1.0 / 64.0;
+    if coarse { FEW + 0.125 } else { FEW }
+}
 
 fn path(scene: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/techniques/{scene}.txt"))
@@ -36,6 +43,7 @@ fn check(scene: &str) {
     let golden = std::fs::read_to_string(path(scene)).unwrap_or_default();
     let update = std::env::var_os("UPDATE_GOLDENS").is_some();
     with_gpu(|gpu| {
+        let tolerance = tolerance(gpu);
         for (name, settings) in super::siblings() {
             let visibility = support::visibility(gpu, &load(scene, SIDE as u32, settings));
             for value in visibility.iter().filter(|value| !value.is_nan()) {
@@ -56,7 +64,7 @@ fn check(scene: &str) {
                 .map(|mean| mean.parse::<f32>().expect("a number"));
             for (block, (mean, expected)) in means.iter().zip(expected).enumerate() {
                 assert!(
-                    (mean - expected).abs() <= TOLERANCE,
+                    (mean - expected).abs() <= tolerance,
                     "{scene}, {name}, block {block}: {mean}, not {expected}"
                 );
             }
