@@ -168,6 +168,7 @@ fn devices_are_listed() {
         "missing",
         "name",
         "subgroup_size",
+        "subpixel_bits",
         "uuid",
         "vulkan",
     ];
