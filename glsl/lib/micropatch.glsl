@@ -23,10 +23,10 @@ float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
     vec2 lower = vec2(texel) - 0.5 - receiver.t;
     vec2 upper = lower + 1.0;
     vec2 neighbours = GAP_FILLING ? depths.yz : depths.xx;
-    vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
-                      lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
     vec3 corners[4];
     if (OBLIQUE) {
+        vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
+                          lower.y > 0.0 ? max(depths.x, neighbours.y) : min(depths.x, neighbours.y));
         float corner = outer.x == depths.x ? outer.y : outer.x;
         corners[0] = back_project(receiver, lower, corner);
         corners[1] = back_project(receiver, vec2(upper.x, lower.y), outer.y);
