@@ -19,8 +19,8 @@ layout(binding = 3, scalar) readonly buffer Positions { vec3 positions[]; };
 layout(binding = 4, scalar) readonly buffer Triangles { uvec3 triangles[]; };
 layout(binding = 5, scalar) writeonly buffer CasterIndices { uint caster_indices[]; };
 
-// Rounding of plane distances, relative to the coordinates' magnitude: receivers on the triangle's own
-// plane count as on its side.
+// Rounding of plane distances, relative to the magnitude of the coordinates that they are found from: receivers on the
+// triangle's own plane count as on its side.
 const float PLANE_ROUNDING = 2e-6;
 
 // Upper bounds of one invocation's casters; see `Fit`.
@@ -37,19 +37,24 @@ vec3 receiver_corner(Fit fit, float side) {
                        value_of(fit.receiver_bounds[side > 0.0 ? 2 : 5], 0.0));
 }
 
-// [least, largest] of normal · (x − at) over the box.
-vec2 range_over(Box box, vec3 normal, vec3 at) {
-    vec3 middle = 0.5 * (box.lower + box.upper) - at;
-    float reach = dot(abs(normal), 0.5 * (box.upper - box.lower));
-    return dot(normal, middle) + vec2(-reach, reach);
+// The largest normal · (x − at) − rounding · |x|₁ of all points x of a box: how far it reaches beyond the plane through `at`
+// and beyond rounding, which grows with each point's own coordinates, so that far receivers do not blur near ones.
+float reach_beyond(Box box, vec3 normal, vec3 at, float rounding) {
+    vec3 middle = clamp(vec3(0.0), box.lower, box.upper);
+    vec3 beyond = max(normal * (box.lower - at) - rounding * abs(box.lower),
+                      normal * (box.upper - at) - rounding * abs(box.upper));
+    beyond = max(beyond, normal * (middle - at) - rounding * abs(middle));
+    return beyond.x + beyond.y + beyond.z;
 }
 
-bool one_sided(vec3 corner[3], Box light, Box receivers, float magnitude) {
+// `center`: the sub-light's, relative to what positions are.
+bool one_sided(vec3 corner[3], Box light, Box receivers, vec3 center) {
     vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    float rounding = PLANE_ROUNDING * magnitude * length(normal);
-    vec2 of_light = range_over(light, normal, corner[0]);
-    vec2 of_receivers = range_over(receivers, normal, corner[0]);
-    return max(of_light.y, of_receivers.y) <= rounding || min(of_light.x, of_receivers.x) >= -rounding;
+    float rounding = PLANE_ROUNDING * length(normal);
+    float of_corner = rounding * dot(abs(corner[0]) + abs(center), vec3(1.0));
+    float above = max(reach_beyond(light, normal, corner[0], rounding), reach_beyond(receivers, normal, corner[0], rounding));
+    float below = max(reach_beyond(light, -normal, corner[0], rounding), reach_beyond(receivers, -normal, corner[0], rounding));
+    return above <= of_corner || below <= of_corner;
 }
 
 void include(inout Reach reach, vec3 p) {
@@ -114,15 +119,13 @@ void main() {
     vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
                        value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
     float depth_max = max(receivers.upper.z, light.upper.z);
-    vec3 largest = max(abs(receivers.lower), abs(receivers.upper)) + abs(view.center);
     Reach reach = Reach(vec4(NONE), NONE);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
     for (uint index = gl_GlobalInvocationID.x; index < frame.opaque_count + frame.masked_count; index += stride) {
         uvec3 triangle = triangles[index];
         vec3 corner[3];
         for (int i = 0; i < 3; ++i) corner[i] = to_face(view, positions[triangle[i]] - view.center);
-        float magnitude = dot(max(largest, abs(corner[0]) + abs(view.center)), vec3(1.0));
-        if (!one_sided(corner, light, receivers, magnitude)
+        if (!one_sided(corner, light, receivers, view.center)
             && include_triangle(reach, view, light, slopes, depth_max, corner))
             append(triangle, index >= frame.opaque_count);
     }

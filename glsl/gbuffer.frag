@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The g-buffer: position and geometric normal of the visible side, and the colour where the frame is
-// shaded [Yang09 alg. 1, step 1].
+// shaded [Yang09 alg. 1, step 1]. A position is where the pixel's ray meets the triangle's plane: interpolating corners would
+// round to the grid of the farthest of them, and a ground of kilometres would tremble under a thing of centimetres.
 #include "pass.glsl"
 
 layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
@@ -9,12 +10,12 @@ layout(binding = 5, scalar) readonly buffer Surfaces { Surface surfaces[]; };
 layout(binding = 6, scalar) readonly buffer Texels { uint texels[]; };
 #include "texture.glsl"
 
-layout(location = 0) in vec3 position;
-layout(location = 1) flat in vec3 normal;
+layout(location = 0) flat in vec4 plane;
+layout(location = 1) flat in vec2 z_range;
 layout(location = 2) in vec2 uv;
 layout(location = 3) flat in uint surface_index;
 
-layout(location = 0) out vec4 position_world;  // [scene units] relative to the scene's origin; w = 1
+layout(location = 0) out vec4 position_world;  // [scene units] relative to the eye; w = 1
 layout(location = 1) out vec4 normal_world;    // unit vector towards the camera's side; w = 0
 layout(location = 2) out vec4 albedo;          // [0, 1] linear
 
@@ -22,13 +23,24 @@ vec3 linear_of(vec3 srgb) {
     return mix(srgb / 12.92, pow((srgb + 0.055) / 1.055, vec3(2.4)), greaterThan(srgb, vec3(0.04045)));
 }
 
+// Where the ray through the pixel's centre meets the plane. Seen edge-on the plane says nothing, so that the triangle's
+// corners bound it.
+vec3 position_on_ray() {
+    vec2 window = 2.0 * gl_FragCoord.xy / vec2(frame.size) - 1.0;
+    vec3 direction = frame.forward + frame.right * (window.x / dot(frame.right, frame.right))
+                   - frame.up * (window.y / dot(frame.up, frame.up));
+    float along = dot(plane.xyz, direction);
+    float z = along == 0.0 ? z_range.x : plane.w / along;
+    return direction * clamp(z, max(z_range.x, frame.near), max(z_range.y, frame.near));
+}
+
 void main() {
     Surface surface = surfaces[surface_index];
-    bool front = dot(normal, frame.eye - position) > 0.0;
+    bool front = plane.w < 0.0;
     if (!front && surface.double_sided == 0u) discard;
     if (TEXTURED && is_hole(surface, uv)) discard;
-    position_world = vec4(position, 1.0);
-    normal_world = vec4(normalize(front ? normal : -normal), 0.0);
+    position_world = vec4(position_on_ray(), 1.0);
+    normal_world = vec4(front ? plane.xyz : -plane.xyz, 0.0);
     vec3 color = TEXTURED ? linear_of(texture_at(surface, uv).rgb) : vec3(1.0);
     albedo = vec4(color * surface.base_color.rgb, 1.0);
 }

@@ -14,13 +14,16 @@ layout(binding = 3) uniform texture2D normal_world;
 layout(binding = 4, scalar) readonly buffer Occlusion { float occlusion[]; };
 layout(binding = 5, scalar) writeonly buffer Visibility { float visibility[]; };
 
-// Whether any part of the light is in front of the surface, and the surface in front of the light.
+// Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding.
 bool faces_light(Light light, vec3 position, vec3 normal) {
     vec3 to_point = position - light.center;
     precise vec2 along = abs(vec2(dot_exact(normal, light.u), dot_exact(normal, light.v))) * light.half_size;
     precise float square = along.x * along.x + along.y * along.y;
     precise float reach = light.round != 0u ? sqrt(square) : along.x + along.y;
-    return dot_exact(to_point, light.n) > 0.0 && reach > dot_exact(normal, to_point);
+    precise vec3 magnitude = abs(to_point) + abs(light.center);
+    precise float rounding = HORIZON_ROUNDING * (magnitude.x + magnitude.y + magnitude.z);
+    precise float height = reach - dot_exact(normal, to_point);
+    return dot_exact(to_point, light.n) > rounding && height > rounding;
 }
 
 void main() {

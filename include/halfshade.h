@@ -438,7 +438,7 @@ typedef struct hs_settings {
     uint32_t percentage_closer;
     // [1, 4096] REFERENCE_MAPS.
     uint32_t maps;
-    // [texel] [0, ...) Depth bias in texels of the receiver's slope. Positions that are rounded more than 32-bit floats
+    // [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are rounded more than 32-bit floats
     // are need more of it than the technique's usual one.
     float bias;
     // 1 = count pixels, packets, nodes and edges, which takes time.

@@ -13,6 +13,8 @@ mod views;
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use crate::error::Result;
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
@@ -103,6 +105,8 @@ pub struct LightPlan {
     pub views: Vec<ViewPlan>,
     /// [sub-light] In how many parts the light is cut.
     pub part_count: usize,
+    /// As they run for it.
+    pub settings: Settings,
     /// What runs in each of its views.
     pub recipe: Recipe,
 }
@@ -172,16 +176,10 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
             limits,
         )
     };
-    let site = Site {
-        origin: shot.scene.origin,
-        map: shot.settings.map,
-        bias: shot.settings.bias,
-        levels: 0,
-    };
     for light in &shot.lights {
-        let found = survey(&shot.scene, &frustum, light);
+        let found = survey(shot, &frustum, light);
         let radiance = views::radiance(shot, light);
-        plan.add_light(&shot.settings, &site, light, found, radiance);
+        plan.add_light(&shot.settings, shot.origin(), light, found, radiance);
     }
     plan.size_map(&shot.settings, limits)?;
     let retained = retained && plan.views().count() == 1;
@@ -228,11 +226,13 @@ impl Plan {
     fn add_light(
         &mut self,
         settings: &Settings,
-        site: &Site,
+        origin: DVec3,
         light: &AreaLight,
         found: Survey,
         radiance: [f32; 3],
     ) {
+        let settings = settings.of_light(light);
+        let site = Site::new(origin, &settings, 0);
         let outcome = match found {
             Survey {
                 receivers: false, ..
@@ -240,7 +240,7 @@ impl Plan {
             Survey { casters: false, .. } => Outcome::Unshadowed,
             _ => Outcome::Shadowed,
         };
-        let parts = technique::parts(light, settings);
+        let parts = technique::parts(light, &settings);
         let faces: Vec<usize> = (0..5).filter(|&face| found.faces[face]).collect();
         let view_first = self.views().count() as u32;
         let tables = self.views().filter(|view| view.sectors.is_some()).count() as u32;
@@ -256,7 +256,7 @@ impl Plan {
                         sides: faces.len() > 1,
                     };
                     let sectors = aspect.sectors();
-                    let mut view = aspect.view(site, light, 0);
+                    let mut view = aspect.view(&site, light, 0);
                     if let Some(table) = &sectors {
                         view.sector_first = sector_first;
                         sector_first += table.len() as u32;
@@ -283,11 +283,12 @@ impl Plan {
         let view_range = view_first..view_first + views.len() as u32;
         self.lights.push(LightPlan {
             name,
-            light: views::whole_light(site.origin, light, radiance, weight_sum, view_range),
+            light: views::whole_light(origin, light, radiance, weight_sum, view_range),
             outcome,
             views,
             part_count: parts.len(),
-            recipe: Recipe::new(settings, light.is_point()),
+            recipe: Recipe::new(&settings),
+            settings,
         });
     }
 

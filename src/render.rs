@@ -103,7 +103,7 @@ impl Renderer {
             ..options.exposure
         };
         let resources = resources::create(gpu, plan, shot, options.costs, exposure)?;
-        let chain = Chain::new(gpu, plan, &shot.settings, &resources, &[])?;
+        let chain = Chain::new(gpu, plan, &resources, &[])?;
         let constants = specialization::of_frame(plan);
         let state = GraphicsState {
             vertex: "gbuffer.vert",

@@ -19,16 +19,13 @@ pub(crate) use geometry::MAX_COORDINATE;
 pub use shape::Shape;
 pub use triangles::Triangles;
 
-/// A scene, flattened into one list of triangles in one space.
-///
-/// `positions` are stored relative to `origin`, so that f32 keeps its precision wherever the scene
-/// stands: world position = `origin` + `positions[i]`.
+/// A scene, flattened into one list of triangles in world space. Whoever works in f32 takes positions relative to where
+/// it looks from ([`Scene::positions_around`]), so that neither where the scene stands nor what else it holds costs
+/// precision.
 #[derive(Debug, Clone, Default)]
 pub struct Scene {
-    /// [scene units, world] The centre of the scene's bounding box.
-    pub origin: DVec3,
-    /// [scene units] Vertex positions relative to `origin`; every component is finite.
-    pub positions: Vec<Vec3>,
+    /// [scene units, world] Vertex positions; every component is finite.
+    pub positions: Vec<DVec3>,
     /// [texture widths, heights] One per vertex, KHR_texture_transform applied; empty when no material
     /// has a texture.
     pub texcoords: Vec<Vec2>,
@@ -87,7 +84,7 @@ pub struct Texture {
     pub linear: bool,
 }
 
-/// A pinhole camera. Positions are in world space (not relative to `Scene::origin`).
+/// A pinhole camera. Positions are in world space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     pub name: String,
@@ -100,6 +97,8 @@ pub struct Camera {
     pub vfov_deg: f64,
     /// Width / height that the file asks for, when it does.
     pub aspect: Option<f64>,
+    /// [scene units] Along the view axis: what is nearer is not seen. None: everything in front of the eye is.
+    pub near: Option<f64>,
 }
 
 /// What an area light looks like. A light with no extent at all is a point: its shadow is hard.
@@ -126,18 +125,34 @@ pub struct AreaLight {
 }
 
 impl Scene {
-    /// [scene units, relative to `origin`] The bounding box of all vertices (both zero without any).
-    pub fn bounds(&self) -> (Vec3, Vec3) {
+    /// [scene units, world] The bounding box of all vertices (both zero without any).
+    pub fn bounds(&self) -> (DVec3, DVec3) {
         let Some((&first, rest)) = self.positions.split_first() else {
-            return (Vec3::ZERO, Vec3::ZERO);
+            return (DVec3::ZERO, DVec3::ZERO);
         };
         rest.iter()
             .fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p)))
     }
 
-    /// The corners of triangle `index`, relative to `origin`.
-    pub fn corners(&self, index: usize) -> [Vec3; 3] {
+    /// [scene units, world] The corners of triangle `index`.
+    pub fn corners(&self, index: usize) -> [DVec3; 3] {
         self.triangles[index].map(|i| self.positions[i as usize])
+    }
+
+    /// [scene units] All positions relative to `origin`, rounded as the device has them.
+    pub fn positions_around(&self, origin: DVec3) -> Vec<Vec3> {
+        let positions = self.positions.iter();
+        positions.map(|&p| (p - origin).as_vec3()).collect()
+    }
+
+    /// [scene units] The corners of triangle `index` relative to `origin`, rounded as the device has them.
+    pub fn corners_around(&self, origin: DVec3, index: usize) -> [Vec3; 3] {
+        self.corners(index).map(|p| (p - origin).as_vec3())
+    }
+
+    /// The material of triangle `index`.
+    pub fn material_of(&self, index: usize) -> &Material {
+        &self.materials[self.triangle_materials[index] as usize]
     }
 
     /// Whether any material lets light through where its texture is transparent.

@@ -122,6 +122,10 @@ shared_constants! {
     /// [share of d_p] Bias for the rounding of positions and depths, per unit of the coordinates'
     /// magnitude over the receiver's depth.
     BIAS_ROUNDING: float = 1e-6;
+    /// [share] Rounding of a receiver's height over the light's plane, and of the light's over the receiver's, per unit of
+    /// the coordinates' magnitude: 8 units in the last place. What is no higher counts as in the plane, so that a surface
+    /// whose plane runs along the light's border is decided the same in all its pixels.
+    HORIZON_ROUNDING: float = 4.76837158203125e-7;
     /// Kernel of a pixel that no occluder of this view can shadow.
     KERNEL_LIT: uint = 0;
     /// Kernel of a pixel whose sub-light is hidden altogether.
@@ -140,10 +144,9 @@ shared_constants! {
 }
 
 shared! {
-    /// The camera and the size of the scene.
+    /// The camera and the size of the scene. Where the engine draws the surface, all positions on the device are relative
+    /// to the camera's eye.
     struct Frame {
-        /// [scene units] Relative to the scene's origin, as all positions on the device.
-        eye: vec3,
         /// Unit vector divided by tan(fov / 2) · aspect.
         right: vec3,
         /// Unit vector divided by tan(fov / 2).

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use crate::scene::{AreaLight, Camera, MAX_COORDINATE, Scene};
 use crate::{Error, Result};
 
@@ -112,8 +114,9 @@ pub struct Settings {
     pub percentage_closer: bool,
     /// [map] [1, 4096] `ReferenceMaps` only.
     pub maps: u32,
-    /// [texel] Bias along the receiver's plane, in texels of its slope.
-    pub bias: f32,
+    /// [texel] Bias along the receiver's plane, in texels of its slope; None: the usual one of what runs
+    /// ([`Settings::bias`]).
+    pub bias: Option<f32>,
     /// Count pixels, packets, nodes and edges (costs time).
     pub counters: bool,
 }
@@ -136,20 +139,6 @@ pub struct Shot {
 /// [pixel] The largest width and height of an image.
 pub const MAX_SIZE: u32 = 32768;
 
-/// [texel] What covers the way from a receiver to the samples that its technique compares it with.
-fn usual_bias(technique: Technique) -> f32 {
-    match technique {
-        // Their samples are compared with the receiver's plane. What is left is the rasteriser's grid, to which corners
-        // of triangles are moved: 1/16 of a texel is what Vulkan asks for.
-        Technique::PacketContour | Technique::PixelContour => 0.25,
-        // The nearest sample is within half a texel.
-        Technique::ReferenceMaps => 0.5,
-        // A filter of many texels: where the mean of the error is nothing on most scenes.
-        Technique::Pcss => 6.0,
-        _ => 1.0,
-    }
-}
-
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -171,15 +160,14 @@ impl Default for Settings {
             filter_samples: 32,
             percentage_closer: false,
             maps: 1024,
-            bias: usual_bias(Technique::PacketContour),
+            bias: None,
             counters: false,
         }
     }
 }
 
 impl Settings {
-    /// The settings that a technique is known by: rivals have a single view, as in their publications, and each
-    /// technique the bias with which it errs least ([`usual_bias`]).
+    /// The settings that a technique is known by: rivals have a single view, as in their publications.
     pub fn usual(technique: Technique) -> Self {
         let usual = Self::default();
         Self {
@@ -192,8 +180,44 @@ impl Settings {
                 Technique::DepthPeeling => 4,
                 _ => 1,
             },
-            bias: usual_bias(technique),
             ..usual
+        }
+    }
+
+    /// As they run for a light: one without extent casts a hard shadow, whatever the technique.
+    pub fn of_light(&self, light: &AreaLight) -> Self {
+        let mut settings = self.clone();
+        if light.is_point() && self.technique != Technique::Hard {
+            settings.technique = Technique::Hard;
+            settings.percentage_closer = false;
+        }
+        settings
+    }
+
+    /// [texel] The bias that is asked for, or else the usual one, with which the technique errs least: what covers the
+    /// way from a receiver to the samples that it is compared with.
+    pub fn bias(&self) -> f32 {
+        let usual = match self.technique {
+            // The nearest sample is within half a texel.
+            Technique::ReferenceMaps => 0.5,
+            // Samples of 3×3 texels are within one and a half.
+            Technique::Hard if self.percentage_closer => 1.5,
+            // A filter of many texels: where the mean of the error is nothing on most scenes.
+            Technique::Pcss => 6.0,
+            // Contours' samples are compared with the receiver's plane. What is left is the rasteriser's grid, to which
+            // corners of triangles are moved: 1/16 of a texel is what Vulkan asks for.
+            _ if self.has_contours() => 0.25,
+            _ => 1.0,
+        };
+        self.bias.unwrap_or(usual)
+    }
+
+    /// Whether occluders are what contours enclose.
+    pub fn has_contours(&self) -> bool {
+        match self.technique {
+            Technique::PacketContour | Technique::PixelContour => true,
+            Technique::DepthPeeling => self.occluders == Occluders::Contours,
+            _ => false,
         }
     }
 
@@ -246,16 +270,22 @@ impl Settings {
             )?;
         }
         check(
-            self.bias.is_finite() && self.bias >= 0.0,
+            self.bias().is_finite() && self.bias() >= 0.0,
             format!(
                 "the bias is a finite number of texels from 0, not {}",
-                self.bias
+                self.bias()
             ),
         )
     }
 }
 
 impl Shot {
+    /// [scene units, world] What positions on the device are relative to: the camera's eye, so that what is seen keeps its
+    /// precision whatever else the scene holds.
+    pub fn origin(&self) -> DVec3 {
+        self.camera.eye
+    }
+
     /// # Errors
     /// [`Error::Invalid`] when the shot cannot be rendered: no triangles, no light, or a camera, size,
     /// light or setting that makes no sense.
@@ -285,15 +315,22 @@ const UP_TOLERANCE: f64 = 1e-6;
 impl Camera {
     /// # Errors
     /// [`Error::Invalid`] when a number is not finite or beyond 10¹⁸, eye and target coincide, `up` has
-    /// no length or lies along the view direction, or the field of view is not in (0, 180).
+    /// no length or lies along the view direction, the field of view is not in (0, 180), or the near plane is not in
+    /// [0, 10¹⁸].
     pub fn validate(&self) -> Result<()> {
         let vectors = [self.eye, self.target, self.up];
-        let sane = |v: &glam::DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
+        let sane = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
         let view = (self.target - self.eye).try_normalize();
         let fault = match (view, self.up.try_normalize()) {
             _ if !vectors.iter().all(sane) => "its eye, target or up is not finite or beyond 1e18",
             _ if !(self.vfov_deg > 0.0 && self.vfov_deg < 180.0) => {
                 "its vertical field of view must be more than 0 and less than 180 degrees"
+            }
+            _ if !self
+                .near
+                .is_none_or(|near| (0.0..=MAX_COORDINATE).contains(&near)) =>
+            {
+                "its near plane must be at a distance from 0 to 1e18"
             }
             (None, _) => "its eye and target are the same point",
             (_, None) => "its up has no length",

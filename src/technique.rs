@@ -58,10 +58,9 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// `point`: the light has no extent, so its shadow is hard whatever the technique.
-    pub fn new(settings: &Settings, point: bool) -> Self {
+    /// `settings`: as they run for the light ([`Settings::of_light`]).
+    pub fn new(settings: &Settings) -> Self {
         match settings.technique {
-            _ if point => hard::recipe(),
             Technique::PacketContour => packet_contour::recipe(settings),
             Technique::PixelContour => pixel_contour::recipe(settings),
             Technique::Micropatch => micropatch::recipe(),
@@ -113,10 +112,10 @@ impl Recipe {
     }
 }
 
-/// The parts of a light that have views of their own.
+/// The parts of a light that have views of their own; `settings`: as they run for it.
 pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
     match settings.technique {
-        Technique::ReferenceMaps if !light.is_point() => reference_maps::parts(light, settings),
+        Technique::ReferenceMaps => reference_maps::parts(light, settings),
         _ => sub_light::parts(light, settings.split),
     }
 }

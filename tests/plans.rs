@@ -41,7 +41,7 @@ fn with(mut shot: Shot, change: impl FnOnce(&mut Settings)) -> Shot {
 fn floor(light_height: f64, light_v: DVec3) -> Shot {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let scene = Scene {
-        positions: corners.map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec(),
+        positions: corners.map(|(x, z)| DVec3::new(x, 0.0, z)).to_vec(),
         triangles: vec![[0, 2, 1], [0, 3, 2]],
         triangle_materials: vec![0, 0],
         opaque_count: 2,
@@ -63,6 +63,7 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
             up: DVec3::Y,
             vfov_deg: 45.0,
             aspect: None,
+            near: None,
         },
         width: 64,
         height: 48,

@@ -347,8 +347,8 @@ fn settings_have_ranges() {
         ("split", |settings| settings.split = 17),
         ("16 to 8192", |settings| settings.map = 15),
         ("16 to 8192", |settings| settings.map = 8193),
-        ("bias", |settings| settings.bias = -0.1),
-        ("bias", |settings| settings.bias = f32::NAN),
+        ("bias", |settings| settings.bias = Some(-0.1)),
+        ("bias", |settings| settings.bias = Some(f32::NAN)),
     ];
     for (word, change) in changes {
         let mut settings = default.clone();

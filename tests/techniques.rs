@@ -139,7 +139,8 @@ fn tiny_lights_cast_hard_shadows() {
                     if surface == 0.0 || y > 1e-3 {
                         continue;
                     }
-                    let (t, d) = place(&view, &fit, Vec3::new(x, y, z));
+                    let relative = DVec3::new(x, y, z) - reference.origin();
+                    let (t, d) = place(&view, &fit, relative.as_vec3());
                     let (column, row) = (t.x.floor() as i32, t.y.floor() as i32);
                     let occludes = |i: i32, j: i32| {
                         let inside = (0..side as i32).contains(&i) && (0..side as i32).contains(&j);

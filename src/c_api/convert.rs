@@ -74,12 +74,15 @@ pub fn settings(given: &hs_settings) -> Outcome<Settings> {
         filter_samples: given.filter_samples,
         percentage_closer: flag(given.percentage_closer, "percentage_closer")?,
         maps: given.maps,
-        bias: given.bias,
+        bias: (given.bias != USUAL_BIAS).then_some(given.bias),
         counters: flag(given.counters, "counters")?,
     };
     settings.validate()?;
     Ok(settings)
 }
+
+/// Asks for the bias that is usual for what runs.
+const USUAL_BIAS: f32 = -1.0;
 
 /// Fills all but the head.
 pub fn write_settings(target: &mut hs_settings, settings: &Settings) {
@@ -106,7 +109,7 @@ pub fn write_settings(target: &mut hs_settings, settings: &Settings) {
         filter_samples: settings.filter_samples,
         percentage_closer: settings.percentage_closer.into(),
         maps: settings.maps,
-        bias: settings.bias,
+        bias: settings.bias.unwrap_or(USUAL_BIAS),
         counters: settings.counters.into(),
         reserved: 0,
     };
@@ -120,6 +123,7 @@ pub fn camera(given: &hs_camera) -> Outcome<Camera> {
         up: DVec3::from_array(given.up),
         vfov_deg: given.vfov_deg,
         aspect: None,
+        near: None,
     };
     camera.validate()?;
     Ok(camera)

@@ -95,8 +95,8 @@ pub unsafe extern "C" fn hs_scene_describe(
             target.masked_triangles = (scene.triangles.len() - scene.opaque_count) as u64;
             target.lights = scene.lights.len() as u64;
             target.cameras = scene.cameras.len() as u64;
-            target.lower = (scene.origin + lower.as_dvec3()).into();
-            target.upper = (scene.origin + upper.as_dvec3()).into();
+            target.lower = lower.into();
+            target.upper = upper.into();
             Ok(())
         })
     })

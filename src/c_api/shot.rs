@@ -38,13 +38,16 @@ pub unsafe extern "C" fn hs_shot_create(
 }
 
 fn shot_of(scene: &Arc<Scene>) -> Shot {
+    let (lower, upper) = scene.bounds();
+    let middle = 0.5 * (lower + upper);
     let camera = scene.cameras.first().cloned().unwrap_or(Camera {
         name: String::new(),
-        eye: scene.origin + glam::DVec3::Z,
-        target: scene.origin,
+        eye: middle + glam::DVec3::Z,
+        target: middle,
         up: glam::DVec3::Y,
         vfov_deg: 45.0,
         aspect: None,
+        near: None,
     });
     Shot {
         camera,

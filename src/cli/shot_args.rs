@@ -131,7 +131,7 @@ impl ShotArgs {
             filter_samples: self.filter_samples,
             percentage_closer: self.percentage_closer,
             maps: self.maps,
-            bias: self.bias.unwrap_or(usual.bias),
+            bias: self.bias,
             counters: self.counters,
         }
     }

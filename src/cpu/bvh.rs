@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::{Error, Result};
 
 /// [scene units] Beyond this the squares in the builder's cost function could overflow f32.
-const MAX_COORDINATE: f32 = 1e15;
+const MAX_COORDINATE: f64 = 1e15;
 
 /// How much boxes are enlarged, per largest coordinate of scene and ray: far more than the slab test's
 /// rounding in f64, so that rays along a box's side and through flat boxes still enter.
@@ -104,16 +104,21 @@ pub struct Hit {
 }
 
 impl Bvh {
+    /// The scene relative to `origin` \[scene units, world\].
+    ///
     /// # Errors
     /// When a coordinate is so large that f32 bounds could overflow.
-    pub fn new(scene: &Scene) -> Result<Self> {
+    pub fn new(scene: &Scene, origin: DVec3) -> Result<Self> {
         let (low, high) = scene.bounds();
-        let reach = low.abs().max(high.abs()).max_element();
+        let reach = (low - origin)
+            .abs()
+            .max((high - origin).abs())
+            .max_element();
         if reach.is_nan() || reach > MAX_COORDINATE {
             return Err(Error::Invalid("the scene is too large to be traced".into()));
         }
         let corners: Vec<_> = (0..scene.triangles.len())
-            .map(|index| scene.corners(index))
+            .map(|index| scene.corners_around(origin, index))
             .collect();
         let bounds = |c: &[Vec3; 3]| Aabb::from_points(&c.map(Vec3A::from));
         let boxes: Vec<Aabb> = corners.iter().map(bounds).collect();
@@ -130,7 +135,7 @@ impl Bvh {
                 .collect(),
             triangles: tree.primitive_indices.clone(),
             tree,
-            reach: f64::from(reach),
+            reach,
         })
     }
 
@@ -231,11 +236,11 @@ mod tests {
 
     /// A bumpy height field of 2 × `side`² triangles that share all their edges, over [−1, 1]².
     fn terrain(side: usize) -> Scene {
-        let grid = |i: usize| 2.0 * i as f32 / side as f32 - 1.0;
+        let grid = |i: usize| 2.0 * i as f64 / side as f64 - 1.0;
         let row = side + 1;
         let position = |i: usize| {
             let (x, z) = (grid(i % row), grid(i / row));
-            Vec3::new(x, 0.2 * (7.0 * x + 3.0 * z).sin(), z)
+            DVec3::new(x, 0.2 * (7.0 * x + 3.0 * z).sin(), z)
         };
         let cell = |i: usize| {
             let corner = (i / side * row + i % side) as u32;
@@ -259,7 +264,7 @@ mod tests {
     #[test]
     fn rays_at_edges_and_corners_do_not_slip_through() {
         let scene = terrain(32);
-        let bvh = Bvh::new(&scene).unwrap();
+        let bvh = Bvh::new(&scene, DVec3::ZERO).unwrap();
         let mut stack = Vec::new();
         let row = 33;
         for eye in [DVec3::new(0.0, 3.0, 0.0), DVec3::new(0.9, 5.0, -2.0)] {
@@ -270,7 +275,9 @@ mod tests {
                 }
                 // At the vertex, and halfway to its neighbours along the three kinds of edges.
                 for other in [index, index + 1, index + row, index + row - 1] {
-                    let target = (corner.as_dvec3() + scene.positions[other].as_dvec3()) / 2.0;
+                    let target = (corner.as_vec3().as_dvec3()
+                        + scene.positions[other].as_vec3().as_dvec3())
+                        / 2.0;
                     let ray = Ray::new(eye, target - eye);
                     let hit = bvh.nearest(&ray, &mut stack, |_| true);
                     assert!(hit.is_some_and(|hit| hit.t < 1.0 + 1e-9), "{index} {other}");
@@ -291,13 +298,15 @@ mod tests {
         ];
         for (shape, middle) in bodies {
             let scene = Scene::of_shapes(&[(shape, Vec3::ONE)]);
-            let bvh = Bvh::new(&scene).unwrap();
+            let bvh = Bvh::new(&scene, DVec3::ZERO).unwrap();
             let mut stack = Vec::new();
             let offsets = [DVec3::ZERO, DVec3::new(0.31, 0.17, -0.23), DVec3::X * 0.5];
             let mut rays = 0;
-            for eye in offsets.map(|offset| middle + offset - scene.origin) {
+            for eye in offsets.map(|offset| middle + offset) {
                 for triangle in 0..scene.triangles.len() {
-                    let corners = scene.corners(triangle).map(|corner| corner.as_dvec3());
+                    let corners = scene
+                        .corners_around(DVec3::ZERO, triangle)
+                        .map(|corner| corner.as_dvec3());
                     for (from, share) in (0..3).flat_map(|i| [0.0, 0.25, 0.5].map(|t| (i, t))) {
                         let target = corners[from].lerp(corners[(from + 1) % 3], share);
                         let ray = Ray::new(eye, target - eye);
@@ -315,7 +324,7 @@ mod tests {
 
     #[test]
     fn a_scene_without_triangles_is_never_hit() {
-        let bvh = Bvh::new(&Scene::default()).unwrap();
+        let bvh = Bvh::new(&Scene::default(), DVec3::ZERO).unwrap();
         assert!(
             bvh.nearest(&Ray::new(DVec3::ZERO, DVec3::X), &mut Vec::new(), |_| true)
                 .is_none()
@@ -324,13 +333,13 @@ mod tests {
 
     #[test]
     fn a_scene_too_large_is_an_error() {
-        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::splat(1e30)];
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::splat(1e30)];
         let scene = Scene {
             positions,
             triangles: vec![[0, 1, 2]],
             ..Scene::default()
         };
-        assert!(Bvh::new(&scene).is_err());
+        assert!(Bvh::new(&scene, DVec3::ZERO).is_err());
     }
 
     proptest! {
@@ -344,13 +353,13 @@ mod tests {
         ) {
             prop_assume!(direction != [0, 0, 0]);
             let vector = |v: [i8; 3]| DVec3::from_array(v.map(f64::from));
-            let vertex = |c: &[i8]| Vec3::new(c[0].into(), if flat { 0.0 } else { c[1].into() }, c[2].into());
+            let vertex = |c: &[i8]| DVec3::new(c[0].into(), if flat { 0.0 } else { c[1].into() }, c[2].into());
             let positions: Vec<_> = corners.iter().flat_map(|c| c.chunks(3).map(vertex)).collect();
             let triangles = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
             let scene = Scene { positions, triangles, ..Scene::default() };
-            let bvh = Bvh::new(&scene).unwrap();
+            let bvh = Bvh::new(&scene, DVec3::ZERO).unwrap();
             let ray = Ray::new(vector(origin), vector(direction));
-            let distances = (0..corners.len()).filter_map(|i| ray.intersect(&scene.corners(i)));
+            let distances = (0..corners.len()).filter_map(|i| ray.intersect(&scene.corners_around(DVec3::ZERO, i)));
             let expected = distances.map(|(t, _)| t).filter(|&t| t > 0.0).reduce(f64::min);
             let mut stack = Vec::new();
             let found = bvh.nearest(&ray, &mut stack, |_| true).map(|hit| hit.t);

@@ -5,9 +5,10 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use glam::DVec3;
 
 use crate::scene::{AreaLight, LightShape};
+use crate::shared::HORIZON_ROUNDING;
 use crate::{Error, Result};
 
-/// A light that can be sampled, relative to the scene's origin.
+/// A light that can be sampled, relative to the eye.
 pub struct Emitter {
     center: DVec3,
     /// Half-axis vectors; for a disc two perpendicular radii.
@@ -63,19 +64,25 @@ impl Emitter {
     }
 
     /// [0, 1] The share of the light's area that is in front of the plane through `point` with
-    /// `normal`; 0 where `point` is not on the side that the light shines to.
+    /// `normal`; 0 where `point` is not on the side that the light shines to. Heights up to what rounding makes of them on
+    /// the device ([`HORIZON_ROUNDING`]) count as none, for both.
     pub fn share_in_front(&self, point: DVec3, normal: DVec3) -> f64 {
         let to_center = self.center - point;
-        if self
-            .normal
-            .is_some_and(|shines| shines.dot(to_center) >= 0.0)
-        {
-            return 0.0;
-        }
+        let magnitude = (to_center.abs() + self.center.abs()).element_sum();
+        let rounding = f64::from(HORIZON_ROUNDING) * magnitude;
         let height = normal.dot(to_center);
         let [a, b] = self.axes.map(|axis| normal.dot(axis));
+        let reach = match self.disc {
+            true => a.hypot(b),
+            false => a.abs() + b.abs(),
+        };
+        let in_front_of_light =
+            (self.normal).is_none_or(|shines| -shines.dot(to_center) > rounding);
+        if !in_front_of_light || height + reach <= rounding {
+            return 0.0;
+        }
         match self.disc {
-            true => disc_share(height, a.hypot(b)),
+            true => disc_share(height, reach),
             false => square_share(height, a, b),
         }
     }

@@ -1,4 +1,4 @@
-//! A pinhole camera's rays.
+//! A pinhole camera's rays, from its eye.
 
 use glam::DVec3;
 
@@ -7,8 +7,6 @@ use crate::{Error, Result};
 
 /// A camera with its axes worked out.
 pub struct Pinhole {
-    /// [scene units, relative to the scene's origin]
-    pub eye: DVec3,
     forward: DVec3,
     /// To the right border of the image plane at distance 1.
     right: DVec3,
@@ -21,7 +19,7 @@ pub struct Pinhole {
 impl Pinhole {
     /// # Errors
     /// When the camera looks nowhere, along its own up vector, or has no field of view.
-    pub fn new(camera: &Camera, origin: DVec3, width: u32, height: u32) -> Result<Self> {
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self> {
         let invalid = |what: &str| Error::Invalid(format!("the camera {what}"));
         let (forward, distance) = (camera.target - camera.eye).normalize_and_length();
         if !(distance > 0.0 && distance.is_finite() && camera.eye.is_finite()) {
@@ -43,7 +41,6 @@ impl Pinhole {
         let half_height = (camera.vfov_deg.to_radians() / 2.0).tan();
         let size = [f64::from(width), f64::from(height)];
         Ok(Self {
-            eye: camera.eye - origin,
             forward,
             right: right * (half_height * size[0] / size[1]),
             up: right.cross(forward) * half_height,

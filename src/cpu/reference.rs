@@ -20,7 +20,7 @@ use crate::{Error, Result};
 pub const BATCHES: u32 = 8;
 
 /// How far a shadow ray starts from its surface, along the normal of its visible side, per largest
-/// coordinate of the triangle: 8 times the rounding that its f32 coordinates carry. Nearer occluders
+/// coordinate of the point, seen from the eye: 8 times the rounding of f32 coordinates there. Nearer occluders
 /// cannot be told from the surface itself.
 const OFFSET: f64 = 1.0 / (1 << 21) as f64;
 
@@ -127,7 +127,7 @@ struct Scratch {
     last_occluder: Option<usize>,
 }
 
-/// The visible point of a pixel, relative to the scene's origin.
+/// The visible point of a pixel, relative to the eye.
 struct Receiver {
     point: DVec3,
     /// Of length 1, on the visible side.
@@ -139,7 +139,11 @@ struct Receiver {
 struct Tracer<'a> {
     scene: &'a Scene,
     bvh: Bvh,
+    /// [scene units, world] What all positions here are relative to.
+    origin: DVec3,
     pinhole: Pinhole,
+    /// [scene units] What the camera sees is farther away, along its axis.
+    near: f64,
     emitter: Emitter,
     width: usize,
     batch_samples: u32,
@@ -167,9 +171,11 @@ impl<'a> Tracer<'a> {
         let scene = &*shot.scene;
         Ok(Self {
             scene,
-            bvh: Bvh::new(scene)?,
-            pinhole: Pinhole::new(&shot.camera, scene.origin, shot.width, shot.height)?,
-            emitter: Emitter::new(area_light, scene.origin)?,
+            bvh: Bvh::new(scene, shot.origin())?,
+            origin: shot.origin(),
+            near: shot.camera.near.unwrap_or(0.0),
+            pinhole: Pinhole::new(&shot.camera, shot.width, shot.height)?,
+            emitter: Emitter::new(area_light, shot.origin())?,
             width: shot.width as usize,
             batch_samples: options.samples.div_ceil(BATCHES),
             seed: options.seed,
@@ -230,30 +236,24 @@ impl<'a> Tracer<'a> {
     /// where a masked texture is transparent.
     fn receiver(&self, x: usize, y: usize, scratch: &mut Scratch) -> Option<Receiver> {
         let direction = self.pinhole.direction(x, y);
-        let ray = Ray::new(self.pinhole.eye, direction);
+        let ray = Ray::new(DVec3::ZERO, direction);
         let visible = |hit: &Hit| {
             let front = self.normal(hit.triangle).dot(direction) < 0.0;
-            (front || self.double_sided(hit.triangle)) && self.opaque(hit)
+            (front || self.double_sided(hit.triangle)) && hit.t > self.near && self.opaque(hit)
         };
         let hit = self.bvh.nearest(&ray, &mut scratch.stack, visible)?;
         let normal = self.normal(hit.triangle).normalize();
-        let corners = self
-            .scene
-            .corners(hit.triangle)
-            .map(|corner| corner.as_dvec3());
         let [a, b, c] = hit.weights;
-        let largest = corners
-            .iter()
-            .map(|corner| corner.abs().max_element())
-            .fold(0.0, f64::max);
+        let corners = self.corners(hit.triangle);
+        let point = corners[0] * a + corners[1] * b + corners[2] * c;
         Some(Receiver {
-            point: corners[0] * a + corners[1] * b + corners[2] * c,
+            point,
             normal: if normal.dot(direction) < 0.0 {
                 normal
             } else {
                 -normal
             },
-            offset: largest * OFFSET,
+            offset: point.abs().max_element() * OFFSET,
         })
     }
 
@@ -281,12 +281,17 @@ impl<'a> Tracer<'a> {
 
     /// Towards the front, not normalised.
     fn normal(&self, triangle: usize) -> DVec3 {
-        let [a, b, c] = self.scene.corners(triangle).map(|corner| corner.as_dvec3());
+        let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
     }
 
+    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        let corners = self.scene.corners_around(self.origin, triangle);
+        corners.map(|corner| corner.as_dvec3())
+    }
+
     fn double_sided(&self, triangle: usize) -> bool {
-        self.scene.materials[self.scene.triangle_materials[triangle] as usize].double_sided
+        self.scene.material_of(triangle).double_sided
     }
 
     /// Whether a ray ends at a hit: always, but where a masked texture is below its cutoff.
@@ -295,7 +300,7 @@ impl<'a> Tracer<'a> {
         if hit.triangle < scene.opaque_count {
             return true;
         }
-        let material = &scene.materials[scene.triangle_materials[hit.triangle] as usize];
+        let material = scene.material_of(hit.triangle);
         let Some(cutoff) = material.alpha_cutoff else {
             return true;
         };

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::shared::Light;
+use crate::shared::{HORIZON_ROUNDING, Light};
 
 /// 0 umbra … 1 lit; 0 where the surface faces away from the whole light or lies behind it.
 ///
@@ -17,8 +17,8 @@ pub fn visibility(light: &Light, position: Vec3, normal: Vec3, hidden: f64) -> f
     (1.0 - hidden / f64::from(light.weight_sum)).clamp(0.0, 1.0)
 }
 
-/// Whether any part of the light is in front of the surface, and the surface in front of the light: a decision,
-/// taken in f32 as the shader takes it.
+/// Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding: a
+/// decision, taken in f32 as the shader takes it.
 fn faces_light(light: &Light, position: Vec3, normal: Vec3) -> bool {
     let to_point = position - Vec3::from(light.center);
     let along = Vec2::new(normal.dot(light.u.into()), normal.dot(light.v.into())).abs()
@@ -28,5 +28,7 @@ fn faces_light(light: &Light, position: Vec3, normal: Vec3) -> bool {
     } else {
         along.x + along.y
     };
-    to_point.dot(light.n.into()) > 0.0 && reach > normal.dot(to_point)
+    let magnitude = to_point.abs() + Vec3::from(light.center).abs();
+    let rounding = HORIZON_ROUNDING * (magnitude.x + magnitude.y + magnitude.z);
+    to_point.dot(light.n.into()) > rounding && reach - normal.dot(to_point) > rounding
 }

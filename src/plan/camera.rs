@@ -7,9 +7,8 @@ use crate::scene::Scene;
 use crate::shared::Frame;
 use crate::shot::Shot;
 
-/// The camera's pyramid, relative to the scene's origin.
+/// The camera's pyramid. Positions are relative to its eye.
 pub struct Frustum {
-    pub eye: DVec3,
     /// Unit vector.
     pub forward: DVec3,
     /// Unit vectors divided by the tangents of the half angles: |right · way| ≤ forward · way inside.
@@ -19,24 +18,25 @@ pub struct Frustum {
     pub near: f64,
 }
 
-/// [share of the distance that can matter] Near plane: reverse-Z in f32 loses nothing by a near one.
-const NEAR: f64 = 1e-5;
+/// [share] Near plane of a camera that states none, of the distance to its target and of the farthest thing that there is,
+/// whichever is less. Reverse-Z in f32 loses nothing by a near one.
+const NEAR: f64 = 1e-7;
 
 impl Frustum {
     pub fn new(shot: &Shot) -> Self {
         let camera = &shot.camera;
-        let forward = (camera.target - camera.eye).normalize();
+        let (forward, distance) = (camera.target - camera.eye).normalize_and_length();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
         let tangent = (0.5 * camera.vfov_deg.to_radians()).tan();
         let aspect = f64::from(shot.width) / f64::from(shot.height);
-        let eye = camera.eye - shot.scene.origin;
+        let nearest = NEAR * distance.min(farthest(&shot.scene, camera.eye));
         Self {
-            eye,
             forward,
             right: right / (tangent * aspect),
             up: up / tangent,
-            near: NEAR * farthest(&shot.scene, eye),
+            // A plane through the eye itself has no depths.
+            near: camera.near.unwrap_or(0.0).max(nearest),
         }
     }
 
@@ -50,11 +50,8 @@ impl Frustum {
         ];
         let mut polygon = corners.to_vec();
         for side in sides {
-            if corners
-                .iter()
-                .any(|&corner| side.dot(corner - self.eye) < 0.0)
-            {
-                clip(&mut polygon, |point| side.dot(point - self.eye));
+            if corners.iter().any(|&corner| side.dot(corner) < 0.0) {
+                clip(&mut polygon, |point| side.dot(point));
             }
         }
         polygon
@@ -63,7 +60,6 @@ impl Frustum {
     pub fn frame(&self, shot: &Shot) -> Frame {
         let scene = &shot.scene;
         Frame {
-            eye: self.eye.as_vec3().into(),
             right: self.right.as_vec3().into(),
             up: self.up.as_vec3().into(),
             forward: self.forward.as_vec3().into(),
@@ -78,8 +74,6 @@ impl Frustum {
 /// [scene units] Distance from the eye to the farthest corner of the scene's box.
 fn farthest(scene: &Scene, eye: DVec3) -> f64 {
     let (lower, upper) = scene.bounds();
-    let reach = (lower.as_dvec3() - eye)
-        .abs()
-        .max((upper.as_dvec3() - eye).abs());
+    let reach = (lower - eye).abs().max((upper - eye).abs());
     reach.length()
 }

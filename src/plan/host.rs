@@ -1,5 +1,7 @@
 //! Plans for a host's frames, of which only the shape is known beforehand: what stands where comes with each frame.
 
+use glam::DVec3;
+
 use super::memory::Inventory;
 use super::survey::Survey;
 use super::views::{Site, whole_light};
@@ -45,7 +47,7 @@ impl HostFrame {
                 "meshes, vertices and triangles are at most {most} each"
             )));
         }
-        let peeled = Recipe::new(&self.settings, self.light.is_point()).layers > 0;
+        let peeled = Recipe::new(&self.settings.of_light(&self.light)).layers > 0;
         let redrawn = matches!(self.casters, Casters::DrawnByHost | Casters::Maps);
         if peeled && redrawn {
             return Err(Error::Unsupported(
@@ -83,8 +85,7 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
         casters: true,
         faces: [true, false, false, false, false].map(|front| front || host.side_faces),
     };
-    let site = host_site(settings, 0);
-    plan.add_light(settings, &site, &host.light, found, [0.0; 3]);
+    plan.add_light(settings, HOST_ORIGIN, &host.light, found, [0.0; 3]);
     if host.casters == Casters::Maps {
         // A host's map may be turned any way.
         for view in plan.lights.iter_mut().flat_map(|light| &mut light.views) {
@@ -105,22 +106,14 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
 }
 
 /// A host's positions are relative to whatever origin it has chosen.
-fn host_site(settings: &Settings, levels: u32) -> Site {
-    Site {
-        origin: glam::DVec3::ZERO,
-        map: settings.map,
-        bias: settings.bias,
-        levels,
-    }
-}
+const HOST_ORIGIN: DVec3 = DVec3::ZERO;
 
 impl Plan {
     /// Moves the light of a host's frame, and its views, to where they stand now. Takes no memory.
     ///
     /// # Errors
     /// The light is of another shape than the one that was planned.
-    pub fn place(&mut self, settings: &Settings, light: &AreaLight) -> Result<()> {
-        let site = host_site(settings, self.levels);
+    pub fn place(&mut self, light: &AreaLight) -> Result<()> {
         for planned in &mut self.lights {
             let round = matches!(light.shape, crate::scene::LightShape::Disc { .. });
             let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2]);
@@ -132,7 +125,8 @@ impl Plan {
             let views =
                 planned.light.view_first..planned.light.view_first + planned.light.view_count;
             let weight_sum = planned.light.weight_sum;
-            planned.light = whole_light(site.origin, light, [0.0; 3], weight_sum, views);
+            planned.light = whole_light(HOST_ORIGIN, light, [0.0; 3], weight_sum, views);
+            let site = Site::new(HOST_ORIGIN, &planned.settings, self.levels);
             for view in &mut planned.views {
                 let sector_first = view.view.sector_first;
                 view.view = view.aspect.view(&site, light, sector_first);

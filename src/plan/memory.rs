@@ -10,10 +10,11 @@ use crate::shot::Settings;
 use crate::technique::{Recipe, Work};
 
 /// Resources that the host fills or reads, by way of memory that it sees.
-const COPIED: [&str; 11] = [
+const COPIED: [&str; 12] = [
     "positions",
     "triangles",
     "triangle_surfaces",
+    "triangle_planes",
     "surfaces",
     "texcoords",
     "vertex_surfaces",
@@ -95,6 +96,7 @@ impl Plan {
             ("positions", vertices * 12),
             ("triangles", triangles * 12),
             ("triangle_surfaces", drawn * triangles * 4),
+            ("triangle_planes", drawn * triangles * 16),
             (
                 "surfaces",
                 inventory.materials * size_of::<shared::Surface>() as u64,

@@ -4,8 +4,9 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{AreaLight, LightShape, Scene};
+use crate::scene::{AreaLight, LightShape};
 use crate::shared::FRONT_REACH;
+use crate::shot::Shot;
 
 use super::camera::Frustum;
 
@@ -23,7 +24,7 @@ pub struct Survey {
 /// Rounding of plane distances, relative to the coordinates' magnitude, as in `casters.comp`.
 const ROUNDING: f64 = 2e-6;
 
-/// A light in its own frame, relative to the scene's origin.
+/// A light in its own frame, relative to the camera's eye.
 struct Placed {
     center: DVec3,
     axes: [DVec3; 3],
@@ -58,8 +59,9 @@ impl Placed {
     }
 }
 
-pub fn survey(scene: &Scene, frustum: &Frustum, light: &AreaLight) -> Survey {
-    let placed = Placed::new(light, scene.origin);
+pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight) -> Survey {
+    let (scene, origin) = (&*shot.scene, shot.origin());
+    let placed = Placed::new(light, origin);
     let mut found = Survey {
         receivers: false,
         casters: false,
@@ -67,9 +69,10 @@ pub fn survey(scene: &Scene, frustum: &Frustum, light: &AreaLight) -> Survey {
     };
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for index in 0..scene.triangles.len() {
-        let corners = scene.corners(index).map(|corner| corner.as_dvec3());
+        let corners = scene.corners(index).map(|corner| corner - origin);
         let mut polygon = frustum.clip(corners);
-        if polygon.is_empty() || !may_face(&placed, frustum.eye, corners) {
+        let double_sided = scene.material_of(index).double_sided;
+        if polygon.is_empty() || !may_face(&placed, corners, double_sided) {
             continue;
         }
         polygon
@@ -86,22 +89,24 @@ pub fn survey(scene: &Scene, frustum: &Frustum, light: &AreaLight) -> Survey {
         && (0..scene.triangles.len()).any(|index| {
             let corners = scene
                 .corners(index)
-                .map(|corner| placed.to_light(corner.as_dvec3()));
+                .map(|corner| placed.to_light(corner - origin));
             may_cast(&placed, corners, lower, upper)
         });
     found
 }
 
-/// Whether any part of the light is in front of the side that the camera sees.
-fn may_face(light: &Placed, eye: DVec3, corners: [DVec3; 3]) -> bool {
+/// Whether the camera, at the origin, sees a side of the triangle that any part of the light is in front of.
+fn may_face(light: &Placed, corners: [DVec3; 3], double_sided: bool) -> bool {
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    let to_eye = normal.dot(eye - corners[0]);
+    let to_eye = -normal.dot(corners[0]);
     let visible = if to_eye < 0.0 { -normal } else { normal };
     let in_light = DVec3::from(light.axes.map(|axis| axis.dot(visible)));
     let magnitude = (corners[0].abs() + light.center.abs()).element_sum();
     // Seen edge-on, either side may be the visible one.
-    let edge_on =
-        to_eye.abs() <= ROUNDING * normal.length() * (magnitude + eye.abs().element_sum());
+    let edge_on = to_eye.abs() <= ROUNDING * normal.length() * magnitude;
+    if to_eye < 0.0 && !edge_on && !double_sided {
+        return false;
+    }
     edge_on
         || visible.dot(light.center - corners[0]) + light.reach(in_light)
             > -ROUNDING * normal.length() * magnitude
@@ -126,16 +131,21 @@ fn may_cast(light: &Placed, corners: [DVec3; 3], lower: DVec3, upper: DVec3) -> 
         return false;
     }
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    let magnitude =
-        (lower.abs().max(upper.abs()) + corners[0].abs() + light.center.abs()).element_sum();
-    let rounding = ROUNDING * magnitude * normal.length();
-    let of_light = -normal.dot(corners[0]);
-    let light_reach = light.reach(normal);
-    let of_receivers = normal.dot(0.5 * (lower + upper) - corners[0]);
-    let receivers_reach = normal.abs().dot(0.5 * (upper - lower));
-    let in_front = (of_light - light_reach).min(of_receivers - receivers_reach) >= -rounding;
-    let behind = (of_light + light_reach).max(of_receivers + receivers_reach) <= rounding;
-    !in_front && !behind
+    let rounding = ROUNDING * normal.length();
+    let of_corner = rounding * (corners[0].abs() + light.center.abs()).element_sum();
+    let reaches = |normal: DVec3| {
+        let plane = normal.dot(corners[0]) + of_corner;
+        light.reach(normal) > plane || farthest_along(lower, upper, normal, rounding) > plane
+    };
+    reaches(normal) && reaches(-normal)
+}
+
+/// The largest normal · x − rounding · |x|₁ of all points x of a box: how far the box reaches beyond what rounding, which
+/// grows with a point's coordinates, can make of it.
+fn farthest_along(lower: DVec3, upper: DVec3, normal: DVec3, rounding: f64) -> f64 {
+    let along = |at: DVec3| normal * at - rounding * at.abs();
+    let at_zero = along(DVec3::ZERO.clamp(lower, upper));
+    along(lower).max(along(upper)).max(at_zero).element_sum()
 }
 
 /// Keeps the part of a convex polygon where `distance` ≥ 0 (Sutherland and Hodgman).

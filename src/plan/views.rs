@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::scene::{AreaLight, LightShape};
 use crate::shared::{self, FRONT_REACH, View};
-use crate::shot::Shot;
+use crate::shot::{Settings, Shot};
 use crate::sub_light::Part;
 
 /// What a light's views are fitted to, beside the light itself.
@@ -20,6 +20,18 @@ pub struct Site {
     pub bias: f32,
     /// [level] MSSM levels that there is memory for.
     pub levels: u32,
+}
+
+impl Site {
+    /// `settings`: as they run for the light.
+    pub fn new(origin: DVec3, settings: &Settings, levels: u32) -> Self {
+        Self {
+            origin,
+            map: settings.map,
+            bias: settings.bias(),
+            levels,
+        }
+    }
 }
 
 /// Which part of a light a view looks from, and in which direction.

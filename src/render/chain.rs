@@ -8,7 +8,6 @@ use crate::error::Result;
 use crate::gpu::{Commands, ComputePass, Gpu, Groups, Resources};
 use crate::plan::Plan;
 use crate::shared::Push;
-use crate::shot::Settings;
 use crate::technique::Recipe;
 
 use super::specialization;
@@ -32,7 +31,6 @@ impl Chain {
     pub fn new(
         gpu: &Arc<Gpu>,
         plan: &Plan,
-        settings: &Settings,
         resources: &Resources,
         maps: &[Resources],
     ) -> Result<Self> {
@@ -44,9 +42,13 @@ impl Chain {
                 let index = match known.get(&key) {
                     Some(&index) => index,
                     None => {
-                        let (variant, recipe) = key;
                         passes.push(ViewPasses::new(
-                            gpu, plan, settings, recipe, variant, resources, maps,
+                            gpu,
+                            plan,
+                            light,
+                            planned.variant,
+                            resources,
+                            maps,
                         )?);
                         known.insert(key, passes.len() - 1);
                         passes.len() - 1

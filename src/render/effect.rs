@@ -148,7 +148,7 @@ impl Effect {
             )));
         }
         frame.validate(&self.host, prepared)?;
-        self.plan.place(&self.host.settings, &frame.light)?;
+        self.plan.place(&frame.light)?;
         for (view, planned) in self.views.iter_mut().zip(self.plan.views()) {
             *view = planned.view;
         }

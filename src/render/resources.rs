@@ -19,7 +19,7 @@ pub fn create(
     exposure: shared::Exposure,
 ) -> Result<Resources> {
     let mut resources = create_common(gpu, plan, costs)?;
-    create_scene(gpu, plan, &shot.scene, &mut resources)?;
+    create_scene(gpu, plan, shot, &mut resources)?;
     let exposure = Buffer::with_data(gpu, "exposure", &[exposure])?;
     resources.add_buffer("exposure", exposure);
     Ok(resources)
@@ -89,18 +89,15 @@ fn planned(plan: &Plan, name: &str) -> u64 {
         .map_or(0, |&(_, bytes)| bytes)
 }
 
-fn create_scene(
-    gpu: &Arc<Gpu>,
-    plan: &Plan,
-    scene: &Scene,
-    resources: &mut Resources,
-) -> Result<()> {
+fn create_scene(gpu: &Arc<Gpu>, plan: &Plan, shot: &Shot, resources: &mut Resources) -> Result<()> {
+    let scene = &*shot.scene;
     let mut add = |name: &'static str, data: &[u8]| -> Result<()> {
         let data = if planned(plan, name) > 0 { data } else { &[] };
         resources.add_buffer(name, Buffer::with_data(gpu, name, data)?);
         Ok(())
     };
-    let positions: Vec<[f32; 3]> = scene.positions.iter().map(|p| p.to_array()).collect();
+    let positions = scene.positions_around(shot.origin());
+    let positions: Vec<[f32; 3]> = positions.iter().map(|p| p.to_array()).collect();
     let texcoords: Vec<[f32; 2]> = scene.texcoords.iter().map(|t| t.to_array()).collect();
     let (surfaces, texels) = surfaces(scene);
     let mut vertex_surfaces = vec![0u32; scene.positions.len()];
@@ -115,10 +112,23 @@ fn create_scene(
         "triangle_surfaces",
         bytemuck::cast_slice(&scene.triangle_materials),
     )?;
+    add("triangle_planes", bytemuck::cast_slice(&planes(shot)))?;
     add("surfaces", bytemuck::cast_slice(&surfaces))?;
     add("texcoords", bytemuck::cast_slice(&texcoords))?;
     add("vertex_surfaces", bytemuck::cast_slice(&vertex_surfaces))?;
     add("texels", &texels)
+}
+
+/// The planes of all triangles: the unit normal n of the front and n · x, worked out in f64 from the corners that the device
+/// has, for positions are found from them however large a triangle is.
+fn planes(shot: &Shot) -> Vec<[f32; 4]> {
+    let plane = |index| {
+        let corners = shot.scene.corners_around(shot.origin(), index);
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        normal.extend(normal.dot(a)).as_vec4().to_array()
+    };
+    (0..shot.scene.triangles.len()).map(plane).collect()
 }
 
 /// Materials, and the texels of all textures one after the other.

@@ -1,18 +1,13 @@
 //! Specialization constants: `glsl/lib/constants.glsl` on the host's side.
 
 use crate::gpu::Specialization;
-use crate::plan::{Casters, Plan, Variant};
-use crate::shot::{Leaf, Mapping, Occluders, Pattern, Settings, Technique};
-use crate::technique::{Recipe, Work};
+use crate::plan::{Casters, LightPlan, Plan, Variant};
+use crate::shot::{Leaf, Mapping, Pattern, Technique};
+use crate::technique::Work;
 
 /// Constants of the passes of a view.
-pub fn of_view(
-    plan: &Plan,
-    settings: &Settings,
-    recipe: &Recipe,
-    variant: Variant,
-    work: Work,
-) -> Specialization {
+pub fn of_view(plan: &Plan, light: &LightPlan, variant: Variant, work: Work) -> Specialization {
+    let settings = &light.settings;
     // Whoever walks the pixel list has packets of one pixel; so have techniques without packets.
     let packets = settings.technique == Technique::PacketContour && work != Work::PixelList;
     let packet = if packets { settings.packet } else { (1, 1) };
@@ -20,10 +15,6 @@ pub fn of_view(
     let footprint = settings.footprint_pruning && settings.technique == Technique::PacketContour;
     let held = if lanes { 1 } else { packet.0 * packet.1 };
     let gap_filling = settings.gap_filling && settings.technique != Technique::DepthPeeling;
-    let contours = match settings.technique {
-        Technique::PacketContour | Technique::PixelContour => true,
-        _ => settings.occluders == Occluders::Contours,
-    };
     let filter_reach = settings.technique == Technique::Hard && settings.percentage_closer;
     vec![
         (0, packet.0),
@@ -39,9 +30,9 @@ pub fn of_view(
         (10, held),
         (11, plan.loop_turns),
         (12, plan.rounds()),
-        (13, recipe.layers.max(1)),
+        (13, light.recipe.layers.max(1)),
         (15, u32::from(gap_filling)),
-        (16, u32::from(contours)),
+        (16, u32::from(settings.has_contours())),
         (17, settings.light_samples),
         (18, u32::from(settings.pattern == Pattern::Jittered)),
         (19, settings.blocker_samples),

@@ -8,10 +8,9 @@ use crate::gpu::{
     Attachments, Commands, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Resources,
     Sources, Specialization,
 };
-use crate::plan::{Casters, Plan, Variant};
+use crate::plan::{Casters, LightPlan, Plan, Variant};
 use crate::shared::{Fit, GROUP_SIZE, Push, Round, TILE_SIZE};
-use crate::shot::Settings;
-use crate::technique::{Recipe, Stage, Work};
+use crate::technique::{Stage, Work};
 
 use super::specialization;
 
@@ -28,7 +27,7 @@ pub enum Maps<'a> {
     Given(usize),
 }
 
-/// Pipelines of the views of one variant under one recipe.
+/// Pipelines of the views of one variant of a light.
 pub struct ViewPasses {
     receivers: ComputePass,
     fit: ComputePass,
@@ -167,13 +166,13 @@ impl ViewPasses {
     pub fn new(
         gpu: &Arc<Gpu>,
         plan: &Plan,
-        settings: &Settings,
-        recipe: &Recipe,
+        light: &LightPlan,
         variant: Variant,
         resources: &Resources,
         maps: &[Resources],
     ) -> Result<Self> {
-        let constants = |work| specialization::of_view(plan, settings, recipe, variant, work);
+        let recipe = &light.recipe;
+        let constants = |work| specialization::of_view(plan, light, variant, work);
         let compute = |name: &str, shader: &str, work| {
             ComputePass::new(gpu, name, shader, &constants(work), resources)
         };

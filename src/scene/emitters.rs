@@ -100,8 +100,8 @@ impl<'a> Emitters<'a> {
             document,
             area_lights: area_lights.lights,
             punctual_radius,
-            scene_center: scene.origin,
-            scene_extent: (high - low).as_dvec3().length(),
+            scene_center: 0.5 * (low + high),
+            scene_extent: (high - low).length(),
         })
     }
 
@@ -237,7 +237,10 @@ impl<'a> Emitters<'a> {
         let json = self.document.get(index, "camera", &user)?;
         let name = label("camera", index.value(), json.name.as_deref());
         let Some(Perspective {
-            yfov, aspect_ratio, ..
+            yfov,
+            aspect_ratio,
+            znear,
+            ..
         }) = json.perspective
         else {
             notes.add("a camera that is not a perspective one is left out", &name);
@@ -259,6 +262,7 @@ impl<'a> Emitters<'a> {
             up: frame.up,
             vfov_deg: f64::from(yfov).to_degrees(),
             aspect: aspect_ratio.map(f64::from),
+            near: Some(f64::from(znear)),
         }))
     }
 }

@@ -13,7 +13,7 @@ use super::geometry::Geometry;
 use super::material::Materials;
 use super::notes::Notes;
 use super::tree::walk;
-use super::triangles::{centered, sorted};
+use super::triangles::sorted;
 use super::{Scene, file};
 use crate::Result;
 
@@ -134,22 +134,20 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     Ok(scene)
 }
 
-/// Moves the triangles to f32 around the scene's centre and gives them their materials.
+/// Gives the triangles their materials.
 fn assemble<'a>(
     document: &'a Document<'a>,
     geometry: Geometry,
     limits: &Limits,
     notes: &mut Notes,
 ) -> Result<Scene> {
-    let (origin, positions) = centered(&geometry.positions);
     let mut materials = Materials::new(document, limits);
     let mut triangles = geometry.triangles.into_iter().zip(geometry.materials);
-    let sorted = sorted(&positions, &mut triangles, |material| {
+    let sorted = sorted(&geometry.positions, &mut triangles, |material| {
         materials.fate(material, notes)
     })?;
     Ok(Scene {
-        origin,
-        positions,
+        positions: geometry.positions,
         texcoords: match materials.textures.is_empty() {
             true => Vec::new(),
             false => geometry.texcoords,

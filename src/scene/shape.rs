@@ -217,13 +217,7 @@ impl Scene {
                 double_sided: true,
             });
         }
-        let (lo, hi) = whole.bounds();
-        scene.origin = 0.5 * (lo + hi);
-        let relative = whole
-            .positions
-            .iter()
-            .map(|&p| (p - scene.origin).as_vec3());
-        scene.positions = relative.collect();
+        scene.positions = whole.positions;
         scene.opaque_count = whole.triangles.len();
         scene.triangles = whole.triangles;
         scene

@@ -10,7 +10,7 @@ use crate::{Error, Result};
 /// What a scene is made of.
 #[derive(Debug, Clone, Default)]
 pub struct Triangles {
-    /// [scene units, world] What `positions` are relative to.
+    /// [scene units, world] What `positions` are relative to; the scene has them in world space.
     pub origin: DVec3,
     /// [scene units]
     pub positions: Vec<Vec3>,
@@ -36,10 +36,9 @@ impl Scene {
             given.materials.push(Material::plain());
         }
         given.validate().map_err(Error::Invalid)?;
-        let world: Vec<DVec3> = (given.positions.iter())
+        let positions: Vec<DVec3> = (given.positions.iter())
             .map(|position| given.origin + position.as_dvec3())
             .collect();
-        let (origin, positions) = centered(&world);
         let surfaces = given.surfaces.iter();
         let fates = surfaces.map(
             |&index| match given.materials[index as usize].alpha_cutoff {
@@ -50,7 +49,6 @@ impl Scene {
         let mut fates = given.indices.iter().copied().zip(fates);
         let sorted = sorted(&positions, &mut fates, Ok)?;
         Ok(Self {
-            origin,
             positions,
             texcoords: match given.textures.is_empty() {
                 true => Vec::new(),
@@ -151,22 +149,6 @@ impl Triangles {
     }
 }
 
-/// The centre of the bounding box (zero without positions), and f32 positions relative to it.
-pub(super) fn centered(positions: &[DVec3]) -> (DVec3, Vec<Vec3>) {
-    let (low, high) = (positions.iter())
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| {
-            (low.min(p), high.max(p))
-        });
-    let origin = match positions.is_empty() {
-        true => DVec3::ZERO,
-        false => (low + high) * 0.5,
-    };
-    (
-        origin,
-        positions.iter().map(|p| (p - origin).as_vec3()).collect(),
-    )
-}
-
 /// Triangles in the order of [`Scene::triangles`].
 pub(super) struct Sorted {
     pub triangles: Vec<[u32; 3]>,
@@ -174,18 +156,18 @@ pub(super) struct Sorted {
     pub opaque_count: usize,
 }
 
-/// Leaves out triangles that have no area, at least not in f32, and puts opaque ones first.
+/// Leaves out triangles that have no area, and puts opaque ones first.
 ///
 /// # Errors
 /// Those of `fate`.
 pub(super) fn sorted<T>(
-    positions: &[Vec3],
+    positions: &[DVec3],
     triangles: &mut dyn Iterator<Item = ([u32; 3], T)>,
     mut fate: impl FnMut(T) -> Result<Fate>,
 ) -> Result<Sorted> {
     let (mut opaque, mut masked) = (Vec::new(), Vec::new());
     for (triangle, surface) in triangles {
-        if double_area(triangle.map(|i| positions[i as usize].as_dvec3())) == 0.0 {
+        if double_area(triangle.map(|i| positions[i as usize])) == 0.0 {
             continue;
         }
         match fate(surface)? {

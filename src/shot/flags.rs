@@ -48,7 +48,7 @@ impl Settings {
             });
         };
         add("map", self.map.to_string());
-        add("bias", self.bias.to_string());
+        add("bias", self.bias().to_string());
         let technique = self.technique;
         if technique != Technique::ReferenceMaps {
             add("split", self.split.to_string());
@@ -58,7 +58,7 @@ impl Settings {
             add("leaf", self.leaf.to_string());
             add("mapping", self.mapping.to_string());
         }
-        if Recipe::new(self, false).mssm {
+        if Recipe::new(self).mssm {
             add("mssm-bits", self.mssm_bits.to_string());
         }
         if technique == Technique::Bitmask {

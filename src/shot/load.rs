@@ -290,6 +290,7 @@ impl From<CameraFile> for Camera {
             up: DVec3::from(file.up),
             vfov_deg: file.vfov_deg,
             aspect: None,
+            near: None,
         }
     }
 }

@@ -56,7 +56,7 @@ impl Sweep {
             settings.maps = maps;
         });
         vary(&mut all, &self.biases, |settings, &bias| {
-            settings.bias = bias;
+            settings.bias = Some(bias);
         });
         let mut known = BTreeSet::new();
         all.retain(|settings| known.insert(settings.flags()));

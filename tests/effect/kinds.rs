@@ -44,7 +44,7 @@ fn frame_of(
 /// Where the camera sees a point, z/w reversed and without a far plane.
 fn clip_from_positions(stage: &Stage) -> DMat4 {
     let camera = &stage.shot.camera;
-    let origin = stage.shot.scene.origin;
+    let origin = stage.shot.origin();
     let (eye, target) = (camera.eye - origin, camera.target - origin);
     let forward = (target - eye).normalize();
     let right = forward.cross(camera.up).normalize();

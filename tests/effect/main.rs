@@ -105,7 +105,7 @@ impl Stage {
     /// The light in the space of the positions.
     fn light(&self) -> AreaLight {
         let mut light = self.shot.lights[0].clone();
-        light.center -= self.shot.scene.origin;
+        light.center -= self.shot.origin();
         light
     }
 
@@ -135,11 +135,11 @@ impl Stage {
     /// The scene's triangles as meshes: the first with indices of 32 bits, the second of 16, the third without.
     fn meshes(&self, host: &mut Host) -> Vec<Mesh> {
         let scene = &self.shot.scene;
-        let corners =
-            |triangle: &[u32; 3]| triangle.map(|i| scene.positions[i as usize].to_array());
+        let positions = scene.positions_around(self.shot.origin());
+        let corners = |triangle: &[u32; 3]| triangle.map(|i| positions[i as usize].to_array());
         // Padded to 20 bytes each, and begun at an offset.
         let mut strided = vec![0.0f32; 5];
-        for position in &scene.positions {
+        for position in &positions {
             strided.extend([position.x, position.y, position.z, 7.0, 7.0]);
         }
         let shared = host.buffer(bytemuck::cast_slice(&strided)).0;
@@ -156,7 +156,7 @@ impl Stage {
             vertices: shared,
             vertex_offset: 20,
             vertex_stride: 20,
-            vertex_count: scene.positions.len() as u32,
+            vertex_count: positions.len() as u32,
             indices: host.buffer(bytemuck::cast_slice(wide)).0,
             index_offset: 0,
             index_bytes: 4,

@@ -36,10 +36,9 @@ impl Painter {
     /// `projections`: of the effect, as it is prepared now.
     pub fn new(host: &mut Host, shot: &Shot, projections: vk::Buffer) -> Self {
         let scene = &shot.scene;
+        let positions = scene.positions_around(shot.origin());
         let corners = scene.triangles.iter().flatten();
-        let corners: Vec<[f32; 3]> = corners
-            .map(|&i| scene.positions[i as usize].to_array())
-            .collect();
+        let corners: Vec<[f32; 3]> = corners.map(|&i| positions[i as usize].to_array()).collect();
         let vertices = host.buffer(bytemuck::cast_slice(&corners)).0;
         let device = host.gpu.raw().1.clone();
         // SAFETY: plain Vulkan; the infos are complete, and what they point to lives as long as the calls.

@@ -107,7 +107,7 @@ fn surface(image: &Image) -> impl Iterator<Item = (f32, DVec3)> {
     let pixels = image.visibility.iter().zip(&image.positions);
     pixels
         .filter(|(_, position)| position[3] > 0.0)
-        .map(|(&value, p)| (value, Vec3::new(p[0], p[1], p[2]).as_dvec3()))
+        .map(|(&value, p)| (value, DVec3::new(p[0], p[1], p[2])))
 }
 
 #[test]

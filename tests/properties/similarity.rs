@@ -65,8 +65,7 @@ fn plates_shot(triangles: &Triangles, how: &Similarity, side: u32, settings: Set
         u: how.vector(DVec3::X * HALF.x),
         v: how.vector(DVec3::Z * HALF.y),
     };
-    let origin = how.point(DVec3::new(0.0, 0.75, 0.0));
-    shot(moved.build_at(origin), view, light, side, settings)
+    shot(moved.build(), view, light, side, settings)
 }
 
 /// An image, and where each pixel is in the plates' own frame of reference.
@@ -80,10 +79,8 @@ struct Placed {
 impl Placed {
     fn render(gpu: &Arc<Gpu>, shot: &Shot, how: &Similarity) -> Self {
         let image = render(gpu, shot);
-        let place = |&[x, y, z, surface]: &[f32; 4]| {
-            let point = || shot.scene.origin + Vec3::new(x, y, z).as_dvec3();
-            (surface > 0.0).then(|| how.back(point()))
-        };
+        let place =
+            |&[x, y, z, surface]: &[f64; 4]| (surface > 0.0).then(|| how.back(DVec3::new(x, y, z)));
         let places = image.positions.iter().map(place).collect();
         Self {
             image,

@@ -25,9 +25,7 @@ pub fn plate(scene: &mut Scene, material: Material, height: f64, low: [f64; 2], 
         (low[0], high[1], Vec2::Y),
         (high[0], high[1], Vec2::ONE),
     ] {
-        scene
-            .positions
-            .push(Vec3::new(x as f32, height as f32, z as f32));
+        scene.positions.push(DVec3::new(x, height, z));
         scene.texcoords.push(uv);
     }
     let masked = material.alpha_cutoff.is_some();
@@ -65,7 +63,9 @@ pub fn rect(u: f64, v: f64) -> LightShape {
 
 /// The scene moved to `origin` with a light above its middle and the camera under the occluder.
 pub fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
-    scene.origin = origin;
+    for position in &mut scene.positions {
+        *position += origin;
+    }
     let light = AreaLight {
         name: String::new(),
         center: origin + DVec3::Y * LIGHT,
@@ -80,6 +80,7 @@ pub fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
         up: -DVec3::Z,
         vfov_deg: VFOV_DEG,
         aspect: None,
+        near: None,
     };
     let (width, height) = SIZE;
     let (scene, lights, notes) = (Arc::new(scene), vec![light], vec![]);

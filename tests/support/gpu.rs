@@ -40,8 +40,8 @@ pub fn raster_grid(gpu: &Gpu) -> f64 {
 /// What a frame of one light left behind.
 pub struct Image {
     pub visibility: Vec<f32>,
-    /// [scene units] Relative to the scene's origin; w = 1 where there is a surface, else 0.
-    pub positions: Vec<[f32; 4]>,
+    /// [scene units, world] w = 1 where there is a surface, else 0.
+    pub positions: Vec<[f64; 4]>,
     pub fits: Vec<Fit>,
     pub plan: Plan,
 }
@@ -73,10 +73,16 @@ pub fn visibility(gpu: &Arc<Gpu>, shot: &Shot) -> Vec<f32> {
     renderer.visibility(0).expect("visibility")
 }
 
-pub fn positions(renderer: &Renderer, shot: &Shot) -> Vec<[f32; 4]> {
-    renderer
+/// [scene units, world] Of all pixels; w = 1 where there is a surface, else 0.
+pub fn positions(renderer: &Renderer, shot: &Shot) -> Vec<[f64; 4]> {
+    let relative: Vec<[f32; 4]> = renderer
         .read_image("position_world", (shot.width * shot.height) as usize)
-        .expect("positions")
+        .expect("positions");
+    let world = |[x, y, z, surface]: [f32; 4]| {
+        let point = shot.origin() + Vec3::new(x, y, z).as_dvec3();
+        point.extend(surface.into()).to_array()
+    };
+    relative.into_iter().map(world).collect()
 }
 
 /// The largest difference of two images of visibility, which must agree about where there is a surface.
@@ -113,7 +119,7 @@ pub fn load(name: &str, side: u32, settings: Settings) -> Shot {
     shot
 }
 
-/// A scene of white, double-sided triangles around the world's origin.
+/// A scene of white, double-sided triangles.
 #[derive(Default)]
 pub struct Triangles(pub Vec<[DVec3; 3]>);
 
@@ -145,15 +151,8 @@ impl Triangles {
     }
 
     pub fn build(&self) -> Arc<Scene> {
-        self.build_at(DVec3::ZERO)
-    }
-
-    /// With positions relative to `origin`.
-    pub fn build_at(&self, origin: DVec3) -> Arc<Scene> {
-        let corners = self.0.iter().flatten();
         Arc::new(Scene {
-            origin,
-            positions: corners.map(|&corner| (corner - origin).as_vec3()).collect(),
+            positions: self.0.iter().flatten().copied().collect(),
             triangles: (0..self.0.len() as u32)
                 .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
                 .collect(),
@@ -212,6 +211,7 @@ pub fn camera(eye: DVec3, target: DVec3, vfov_deg: f64) -> Camera {
         up: if down { DVec3::NEG_Z } else { DVec3::Y },
         vfov_deg,
         aspect: None,
+        near: None,
     }
 }
 

@@ -197,11 +197,7 @@ pub fn encode(width: u32, height: u32, texels: &[[u8; 4]], format: image::ImageF
 /// The corners of all triangles in world space, in order.
 pub fn corners(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
     (0..scene.triangles.len())
-        .map(|i| {
-            scene
-                .corners(i)
-                .map(|p| (scene.origin + p.as_dvec3()).to_array())
-        })
+        .map(|i| scene.corners(i).map(|p| p.to_array()))
         .collect()
 }
 

@@ -85,7 +85,6 @@ fn check_message(error: &Error) {
 
 fn check_scene(scene: &Scene) {
     let vertices = scene.positions.len();
-    assert!(scene.origin.is_finite());
     assert!(scene.positions.iter().all(|position| position.is_finite()));
     assert!(scene.texcoords.is_empty() || scene.texcoords.len() == vertices);
     let inside = |&vertex: &u32| (vertex as usize) < vertices;

@@ -93,7 +93,7 @@ impl Prepared {
         let gather = (!meshes.is_empty())
             .then(|| with_each("gather", "gather.comp", &constants, &of_meshes))
             .transpose()?;
-        let chain = Chain::new(gpu, plan, &host.settings, &resources, &maps)?;
+        let chain = Chain::new(gpu, plan, &resources, &maps)?;
         let state = GraphicsState {
             vertex: "whole_image.vert",
             fragment: Some("export.frag"),

@@ -121,13 +121,13 @@ impl Truth {
 /// The point of the ground that each pixel sees, row by row from the top; None: it sees something else.
 fn ground(shot: &Shot) -> Result<Vec<Option<DVec3>>> {
     let scene = &*shot.scene;
-    let bvh = Bvh::new(scene)?;
-    let pinhole = Pinhole::new(&shot.camera, scene.origin, shot.width, shot.height)?;
+    let bvh = Bvh::new(scene, shot.origin())?;
+    let pinhole = Pinhole::new(&shot.camera, shot.width, shot.height)?;
     let mut stack = Vec::new();
     let mut point = |x, y| {
         let direction = pinhole.direction(x, y);
-        let hit = bvh.nearest(&Ray::new(pinhole.eye, direction), &mut stack, |_| true)?;
-        let point = pinhole.eye + direction * hit.t + scene.origin;
+        let hit = bvh.nearest(&Ray::new(DVec3::ZERO, direction), &mut stack, |_| true)?;
+        let point = shot.origin() + direction * hit.t;
         (point.y.abs() <= GROUND_HEIGHT).then_some(point)
     };
     let (width, height) = (shot.width as usize, shot.height as usize);

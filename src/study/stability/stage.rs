@@ -151,6 +151,7 @@ impl Stage {
             up: DVec3::Y,
             vfov_deg: 40.0,
             aspect: None,
+            near: None,
         };
         Case {
             family,
