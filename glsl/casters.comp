@@ -18,10 +18,14 @@ layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
 layout(binding = 3, scalar) readonly buffer Positions { vec3 positions[]; };
 layout(binding = 4, scalar) readonly buffer Triangles { uvec3 triangles[]; };
 layout(binding = 5, scalar) writeonly buffer CasterIndices { uint caster_indices[]; };
+layout(binding = 6, scalar) readonly buffer PositionResiduals { vec3 position_residuals[]; };
+#include "caster_position.glsl"
 
 // Rounding of plane distances, relative to the magnitude of the coordinates that they are found from: receivers on the
 // triangle's own plane count as on its side.
 const float PLANE_ROUNDING = 2e-6;
+// The same of what is found from corners and the light alone: 4 units in the last place.
+const float CORNER_ROUNDING = 2.4e-7;
 
 // Upper bounds of one invocation's casters; see `Fit`.
 struct Reach {
@@ -47,14 +51,22 @@ float reach_beyond(Box box, vec3 normal, vec3 at, float rounding) {
     return beyond.x + beyond.y + beyond.z;
 }
 
+// Whether the light or a receiver is on the side of the triangle's plane that `normal` points to, beyond rounding. Corners
+// are exact relative to the light (caster_position.glsl), receivers are found from positions relative to the eye.
 // `center`: the sub-light's, relative to what positions are.
+bool reaches_beyond(vec3 normal, vec3 at, Box light, Box receivers, vec3 center) {
+    float of_corner = dot(abs(at), vec3(1.0)) * length(normal);
+    float of_light = reach_beyond(light, normal, at, 0.0) - CORNER_ROUNDING * of_corner;
+    float rounding = PLANE_ROUNDING * length(normal);
+    float of_receivers = reach_beyond(receivers, normal, at, rounding) - PLANE_ROUNDING * of_corner
+                       - rounding * dot(abs(center), vec3(1.0));
+    return max(of_light, of_receivers) > 0.0;
+}
+
 bool one_sided(vec3 corner[3], Box light, Box receivers, vec3 center) {
     vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    float rounding = PLANE_ROUNDING * length(normal);
-    float of_corner = rounding * dot(abs(corner[0]) + abs(center), vec3(1.0));
-    float above = max(reach_beyond(light, normal, corner[0], rounding), reach_beyond(receivers, normal, corner[0], rounding));
-    float below = max(reach_beyond(light, -normal, corner[0], rounding), reach_beyond(receivers, -normal, corner[0], rounding));
-    return above <= of_corner || below <= of_corner;
+    return !reaches_beyond(normal, corner[0], light, receivers, center)
+        || !reaches_beyond(-normal, corner[0], light, receivers, center);
 }
 
 void include(inout Reach reach, vec3 p) {
@@ -124,7 +136,7 @@ void main() {
     for (uint index = gl_GlobalInvocationID.x; index < frame.opaque_count + frame.masked_count; index += stride) {
         uvec3 triangle = triangles[index];
         vec3 corner[3];
-        for (int i = 0; i < 3; ++i) corner[i] = to_face(view, positions[triangle[i]] - view.center);
+        for (int i = 0; i < 3; ++i) corner[i] = caster_position(view, triangle[i]);
         if (!one_sided(corner, light, receivers, view.center)
             && include_triangle(reach, view, light, slopes, depth_max, corner))
             append(triangle, index >= frame.opaque_count);

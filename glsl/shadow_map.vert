@@ -10,12 +10,15 @@ layout(binding = 2, scalar) readonly buffer Positions { vec3 positions[]; };
 layout(binding = 3, scalar) readonly buffer Texcoords { vec2 texcoords[]; };
 layout(binding = 4, scalar) readonly buffer VertexSurfaces { uint vertex_surfaces[]; };
 
+layout(binding = 8, scalar) readonly buffer PositionResiduals { vec3 position_residuals[]; };
+#include "caster_position.glsl"
+
 layout(location = 0) out vec2 uv;
 layout(location = 1) flat out uint surface_index;
 
 void main() {
     View view = views[push.index];
-    vec3 p = to_face(view, positions[gl_VertexIndex] - view.center);
+    vec3 p = caster_position(view, gl_VertexIndex);
     // Sample (i, j) is a texel's centre, at window position (i + ½, j + ½).
     vec2 window = fits[push.index].focal * p.xy + (fits[push.index].center + 0.5) * p.z;
     gl_Position = vec4(window * (2.0 / float(view.map_size)) - p.z, fits[push.index].near, p.z);

@@ -3,6 +3,7 @@
 
 mod camera;
 mod host;
+mod light;
 mod maps;
 mod memory;
 mod omissions;
@@ -11,21 +12,18 @@ mod survey;
 mod text;
 mod views;
 
-use std::sync::Arc;
-
-use glam::DVec3;
-
 use crate::error::Result;
 use crate::gpu::Limits;
-use crate::scene::AreaLight;
-use crate::shared::{self, SECTOR_STEPS, View};
+use crate::shared;
 use crate::shot::{Settings, Shot};
 use crate::technique::{self, Recipe};
 use camera::Frustum;
+use light::Placed;
 use memory::Inventory;
-use survey::{Survey, survey};
+use survey::survey;
 
 pub use host::{HostFrame, plan_for_host};
+pub use light::{LightPlan, Outcome, Variant, ViewPlan, ViewSet};
 pub use views::{Aspect, Site};
 
 /// What the caller wants to have.
@@ -96,65 +94,6 @@ pub struct Omission {
     pub reason: String,
 }
 
-/// What is to be done about a light.
-#[derive(Debug, Clone)]
-pub struct LightPlan {
-    pub name: String,
-    pub light: shared::Light,
-    pub outcome: Outcome,
-    pub views: Vec<ViewPlan>,
-    /// [sub-light] In how many parts the light is cut.
-    pub part_count: usize,
-    /// As they run for it.
-    pub settings: Settings,
-    /// What runs in each of its views.
-    pub recipe: Recipe,
-}
-
-impl LightPlan {
-    /// Whether its views need something of their recipe.
-    fn needs(&self, test: impl Fn(&Recipe) -> bool) -> bool {
-        !self.views.is_empty() && test(&self.recipe)
-    }
-
-    /// Whether several views add up.
-    pub fn accumulates(&self) -> bool {
-        self.views.len() > 1
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
-    /// Nothing visible is lit by it: visibility 0.
-    Dark,
-    /// Nothing can cast a shadow: visibility 1 where it shines.
-    Unshadowed,
-    /// Its views decide.
-    Shadowed,
-}
-
-/// One face of one sub-light.
-#[derive(Debug, Clone)]
-pub struct ViewPlan {
-    pub view: View,
-    pub variant: Variant,
-    /// Sector table of a sub-light that a disc's rim cuts.
-    pub sectors: Option<Arc<[f32]>>,
-    /// What the view was planned from.
-    pub aspect: Aspect,
-}
-
-/// Which pipelines a view needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Variant {
-    /// A disc's rim cuts the sub-light.
-    pub round: bool,
-    /// The map is not parallel to the light.
-    pub oblique: bool,
-    /// The light has more than one view.
-    pub accumulate: bool,
-}
-
 /// Plans a frame.
 ///
 /// `retained`: the shadow map of the last frame's last view is still there and nothing that it depends on has
@@ -177,9 +116,9 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
         )
     };
     for light in &shot.lights {
-        let found = survey(shot, &frustum, light);
-        let radiance = views::radiance(shot, light);
-        plan.add_light(&shot.settings, shot.origin(), light, found, radiance);
+        let parts = technique::parts(light, &shot.settings.of_light(light));
+        let found = survey(shot, &frustum, light, &parts);
+        plan.add_light(&shot.settings, &Placed::of_shot(shot, light), parts, &found);
     }
     plan.size_map(&shot.settings, limits)?;
     let retained = retained && plan.views().count() == 1;
@@ -192,7 +131,17 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
 
 impl Plan {
     pub fn views(&self) -> impl Iterator<Item = &ViewPlan> {
-        self.lights.iter().flat_map(|light| &light.views)
+        self.lights.iter().flat_map(LightPlan::views)
+    }
+
+    /// The sets of views of all lights.
+    pub(crate) fn sets(&self) -> impl Iterator<Item = &ViewSet> {
+        self.lights.iter().flat_map(|light| &light.sets)
+    }
+
+    fn views_mut(&mut self) -> impl Iterator<Item = &mut ViewPlan> {
+        let sets = self.lights.iter_mut().flat_map(|light| &mut light.sets);
+        sets.flat_map(|set| &mut set.views)
     }
 
     /// A plan of a drawn scene, without lights yet.
@@ -223,77 +172,8 @@ impl Plan {
         }
     }
 
-    fn add_light(
-        &mut self,
-        settings: &Settings,
-        origin: DVec3,
-        light: &AreaLight,
-        found: Survey,
-        radiance: [f32; 3],
-    ) {
-        let settings = settings.of_light(light);
-        let site = Site::new(origin, &settings, 0);
-        let outcome = match found {
-            Survey {
-                receivers: false, ..
-            } => Outcome::Dark,
-            Survey { casters: false, .. } => Outcome::Unshadowed,
-            _ => Outcome::Shadowed,
-        };
-        let parts = technique::parts(light, &settings);
-        let faces: Vec<usize> = (0..5).filter(|&face| found.faces[face]).collect();
-        let view_first = self.views().count() as u32;
-        let tables = self.views().filter(|view| view.sectors.is_some()).count() as u32;
-        let mut sector_first = tables * (SECTOR_STEPS + 1);
-        let mut views = Vec::new();
-        if outcome == Outcome::Shadowed {
-            let accumulate = parts.len() * faces.len() > 1;
-            for part in &parts {
-                views.extend(faces.iter().map(|&face| {
-                    let aspect = Aspect {
-                        part: part.clone(),
-                        face,
-                        sides: faces.len() > 1,
-                    };
-                    let sectors = aspect.sectors();
-                    let mut view = aspect.view(&site, light, 0);
-                    if let Some(table) = &sectors {
-                        view.sector_first = sector_first;
-                        sector_first += table.len() as u32;
-                    }
-                    ViewPlan {
-                        view,
-                        variant: Variant {
-                            round: sectors.is_some(),
-                            oblique: face != 0,
-                            accumulate,
-                        },
-                        sectors,
-                        aspect,
-                    }
-                }));
-            }
-        }
-        let name = if light.name.is_empty() {
-            format!("light {}", self.lights.len())
-        } else {
-            light.name.clone()
-        };
-        let weight_sum = views::weight_sum(&parts);
-        let view_range = view_first..view_first + views.len() as u32;
-        self.lights.push(LightPlan {
-            name,
-            light: views::whole_light(origin, light, radiance, weight_sum, view_range),
-            outcome,
-            views,
-            part_count: parts.len(),
-            recipe: Recipe::new(&settings),
-            settings,
-        });
-    }
-
     /// Whether some light's views need something of their recipe.
     pub fn needs(&self, test: impl Fn(&Recipe) -> bool) -> bool {
-        self.lights.iter().any(|light| light.needs(&test))
+        self.sets().any(|set| test(&set.recipe))
     }
 }

@@ -139,15 +139,15 @@ impl Scene {
         self.triangles[index].map(|i| self.positions[i as usize])
     }
 
-    /// [scene units] All positions relative to `origin`, rounded as the device has them.
+    /// [scene units] All positions relative to `origin`, in f32.
     pub fn positions_around(&self, origin: DVec3) -> Vec<Vec3> {
         let positions = self.positions.iter();
         positions.map(|&p| (p - origin).as_vec3()).collect()
     }
 
-    /// [scene units] The corners of triangle `index` relative to `origin`, rounded as the device has them.
-    pub fn corners_around(&self, origin: DVec3, index: usize) -> [Vec3; 3] {
-        self.corners(index).map(|p| (p - origin).as_vec3())
+    /// [scene units] The corners of triangle `index` relative to `origin`.
+    pub fn corners_around(&self, origin: DVec3, index: usize) -> [DVec3; 3] {
+        self.corners(index).map(|p| p - origin)
     }
 
     /// The material of triangle `index`.

@@ -207,6 +207,10 @@ shared! {
     struct View {
         /// [scene units] The sub-light's centre.
         center: vec3,
+        /// [scene units] What its rounding has left over.
+        center_residual: vec3,
+        /// [scene units] Surfaces no higher over the light's plane are the lamp's own and cast no shadow.
+        touch: float,
         /// Unit vectors of the map: right × up = forward.
         right: vec3,
         up: vec3,

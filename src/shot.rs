@@ -114,6 +114,9 @@ pub struct Settings {
     pub percentage_closer: bool,
     /// [map] [1, 4096] `ReferenceMaps` only.
     pub maps: u32,
+    /// [point] [0, 4096] `PacketContour` only: on the whole light, of those that stand for sub-lights that an occluder is
+    /// nearer to than they are wide; 0 = none, they are integrated all the same.
+    pub near_points: u32,
     /// [texel] Bias along the receiver's plane, in texels of its slope; None: the usual one of what runs
     /// ([`Settings::bias`]).
     pub bias: Option<f32>,
@@ -135,6 +138,9 @@ pub struct Shot {
     /// What the shot file asked for and is ignored, a sentence each (`Scene::notes` are the scene's).
     pub notes: Vec<String>,
 }
+
+/// [texel] The smallest width and height of a shadow map.
+const MIN_MAP: u32 = 16;
 
 /// [pixel] The largest width and height of an image.
 pub const MAX_SIZE: u32 = 32768;
@@ -160,6 +166,7 @@ impl Default for Settings {
             filter_samples: 32,
             percentage_closer: false,
             maps: 1024,
+            near_points: 197,
             bias: None,
             counters: false,
         }
@@ -194,6 +201,17 @@ impl Settings {
         settings
     }
 
+    /// As they run for points of the light that stand for a part of it: hard shadows of which the mean counts. A quarter of
+    /// the texels is enough, since a point's error is one of many.
+    pub fn of_points(&self) -> Self {
+        Self {
+            technique: Technique::ReferenceMaps,
+            map: (self.map / 2).max(MIN_MAP),
+            bias: None,
+            ..self.clone()
+        }
+    }
+
     /// [texel] The bias that is asked for, or else the usual one, with which the technique errs least: what covers the
     /// way from a receiver to the samples that it is compared with.
     pub fn bias(&self) -> f32 {
@@ -210,6 +228,11 @@ impl Settings {
             _ => 1.0,
         };
         self.bias.unwrap_or(usual)
+    }
+
+    /// Whether sub-lights that an occluder is near to give way to points.
+    pub fn has_near_points(&self) -> bool {
+        self.technique == Technique::PacketContour && self.near_points > 0
     }
 
     /// Whether occluders are what contours enclose.
@@ -235,8 +258,11 @@ impl Settings {
             format!("the light's split is 1 to 16, not {}", self.split),
         )?;
         check(
-            (16..=8192).contains(&self.map),
-            format!("a shadow map is 16 to 8192 texels wide, not {}", self.map),
+            (MIN_MAP..=8192).contains(&self.map),
+            format!(
+                "a shadow map is {MIN_MAP} to 8192 texels wide, not {}",
+                self.map
+            ),
         )?;
         check(
             [16, 32].contains(&self.mssm_bits),
@@ -259,6 +285,7 @@ impl Settings {
             ),
             ("samples of the filter", self.filter_samples, 1..=1024),
             ("reference maps", self.maps, 1..=4096),
+            ("points near occluders", self.near_points, 0..=4096),
         ] {
             check(
                 range.contains(&value),
@@ -284,6 +311,17 @@ impl Shot {
     /// precision whatever else the scene holds.
     pub fn origin(&self) -> DVec3 {
         self.camera.eye
+    }
+
+    /// [scene units] Surfaces no higher over the plane of a light touch it: they are the lamp's own and cast no shadow. That
+    /// is 1e-7 of the light's size, or what rounds off coordinates as large as the light's, be it in the file, whose are
+    /// no larger than the scene, or seen from the eye.
+    pub fn touch(&self, light: &AreaLight) -> f64 {
+        let (lower, upper) = self.scene.bounds();
+        let in_file = light.center.abs().max_element();
+        let of_scene = 0.5 * (upper - lower).max_element();
+        let from_eye = (light.center - self.origin()).abs().max_element();
+        light.touch(from_eye.max(in_file.min(of_scene)))
     }
 
     /// # Errors

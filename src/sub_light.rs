@@ -1,6 +1,7 @@
 //! A light cut into split × split sub-lights (`algorithm.md` §1, §3).
 
 use std::collections::BTreeMap;
+use std::f64::consts::GOLDEN_RATIO;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec2, DVec3};
@@ -22,7 +23,7 @@ pub struct SubLight {
     /// [half sizes²] Area swept from direction 0 up to each of `SECTOR_STEPS` + 1 equally spaced perimeter
     /// parameters, 0 to 8; empty without a rim.
     pub sectors: Arc<[f32]>,
-    /// [half sizes²] Area; its weight among the light's parts, which all have the same half sizes.
+    /// [half sizes²] Area.
     pub area: f64,
 }
 
@@ -41,6 +42,19 @@ pub struct Part {
     rim: Option<(DVec2, f64)>,
     sectors: Arc<[f32]>,
     area: f64,
+    /// Its weight among the light's parts: their areas stand in this proportion.
+    weight: f64,
+}
+
+/// \[−1, 1\]² Points that are evenly spread over the square and over its sides: the golden lattice. What repeats before a
+/// lamp, such as slats, resonates with a lattice; of all numbers of points from 128 to 256, 197 resonate least with 2 to 24
+/// slats in any direction (error 0.009 on the mean, 0.04 at most).
+pub fn golden_lattice(count: u32) -> impl Iterator<Item = DVec2> {
+    (0..count).map(move |index| {
+        let along = (f64::from(index) + 0.5) / f64::from(count);
+        let across = (f64::from(index) * (GOLDEN_RATIO - 1.0) + 0.5).fract();
+        2.0 * DVec2::new(along, across) - 1.0
+    })
 }
 
 /// A light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
@@ -104,9 +118,37 @@ impl Part {
         }
     }
 
-    /// [half sizes²] Area; its weight among the light's parts.
-    pub fn area(&self) -> f64 {
-        self.area
+    /// Its weight among the light's parts.
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// [half sizes of the light] Lower and upper corner of its cell, from the middle of the light.
+    pub fn cell(&self) -> (DVec2, DVec2) {
+        let (lower, upper) = (self.middle - 1.0, self.middle + 1.0);
+        (lower / self.split, upper / self.split)
+    }
+
+    /// Those of the points \[half sizes of the light\] that lie in it, or else the point that it is centred on; they share
+    /// its weight.
+    pub fn points(&self, on_light: &[DVec2]) -> Vec<Self> {
+        let within = |&at: &DVec2| {
+            // From the part's centre.
+            let at = at * self.split - self.middle - self.shift;
+            let (lower, upper) = (DVec2::NEG_ONE - self.shift, DVec2::ONE - self.shift);
+            let in_rim = |(center, radius): (DVec2, f64)| at.distance(center) < radius;
+            at.cmpge(lower).all() && at.cmplt(upper).all() && self.rim.is_none_or(in_rim)
+        };
+        let mut places: Vec<DVec2> = on_light.iter().copied().filter(within).collect();
+        if places.is_empty() {
+            places.push((self.middle + self.shift) / self.split);
+        }
+        let weight = self.weight / places.len() as f64;
+        let point = |place| Self {
+            weight,
+            ..Self::point(place)
+        };
+        places.into_iter().map(point).collect()
     }
 
     /// See [`SubLight::sectors`].
@@ -123,6 +165,7 @@ impl Part {
             rim: None,
             sectors: Arc::default(),
             area: 4.0,
+            weight: 4.0,
         }
     }
 
@@ -137,6 +180,7 @@ impl Part {
         if rim.is_some() {
             part.sectors = part.sweep().into();
             part.area = part.sectors[SECTOR_STEPS as usize].into();
+            part.weight = part.area;
         }
         (part.area > 1e-6).then_some(part)
     }

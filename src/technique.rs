@@ -29,10 +29,8 @@ pub struct Stage {
 /// What a stage is dispatched over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Work {
-    /// Every pixel.
-    Pixels,
     /// Every pixel, if the view has casters or nothing is accumulated.
-    Kernels,
+    Pixels,
     /// Every packet of the image, if the view has casters.
     Packets,
     /// The view's list of coherent packets.
@@ -129,7 +127,7 @@ const TURNS_OF_WALKS: u32 = 4;
 const KERNELS: Stage = Stage {
     name: "kernels",
     shader: "kernels.comp",
-    work: Work::Kernels,
+    work: Work::Pixels,
 };
 
 /// Packets and pixels to their lists [Yang09 §4.3].

@@ -36,7 +36,7 @@ const uint PLANE_COUNT = 11u;
 const float REGION_ROUNDING = 2e-6;
 
 // Signed distance (up to a factor) of a point to each of the region's planes, ≥ 0 inside: four slopes,
-// four widest tangents, behind the farthest receiver, behind the light plane, and at the eye.
+// four widest tangents, behind the farthest receiver, above the lamp's own surface, and at the eye.
 float[PLANE_COUNT] plane_distances(View view, Box light, vec4 slopes, float depth_max, vec3 p) {
     vec4 border = vec4(light.upper.xy, -light.lower.xy) + slopes * (p.z - light.lower.z);
     vec4 open = border - vec4(p.xy, -p.xy) + REGION_ROUNDING * (abs(border) + abs(p.xyxy));
@@ -44,5 +44,5 @@ float[PLANE_COUNT] plane_distances(View view, Box light, vec4 slopes, float dept
     float in_light = p.x * dot(view.light_n, view.right) + p.y * dot(view.light_n, view.up)
                    + p.z * dot(view.light_n, view.forward);
     return float[PLANE_COUNT](open.x, open.y, open.z, open.w, widest - p.x, widest + p.x, widest - p.y,
-                              widest + p.y, depth_max - p.z, in_light, p.z - 1e-6 * depth_max);
+                              widest + p.y, depth_max - p.z, in_light - view.touch, p.z - view.touch);
 }

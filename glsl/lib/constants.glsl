@@ -25,3 +25,4 @@ layout(constant_id = 21) const int FILTER_REACH = 0;      // [texel] of the hard
 layout(constant_id = 22) const bool MASKED = false;       // the casters drawn have holes
 layout(constant_id = 23) const bool GIVEN = false;        // a host has the shadow maps already
 layout(constant_id = 24) const bool POSITIONS = false;    // a host's surface is positions rather than depths
+layout(constant_id = 25) const bool RESIDUALS = false;    // casters' positions have residuals

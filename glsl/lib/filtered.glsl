@@ -24,7 +24,9 @@ void filter_pixel(uint samples) {
     vec3 to_point = position.xyz - view.center;
     bool looked_at = position.w > 0.0 && in_view(view, to_point, normal) && fit.level_count > 0u;
     float occluded = 0.0;
-    if (looked_at) occluded = view.weight * occluded_of(view, fit, pixel, project(view, fit, to_point, normal));
+    // A loop, since some drivers execute both sides of an `if`: of the pixels of a side face most are another face's.
+    [[dont_unroll]] for (uint once = 0u; once < uint(looked_at); ++once)
+        occluded = view.weight * occluded_of(view, fit, pixel, project(view, fit, to_point, normal));
     if (!ACCUMULATE) occlusion[index] = occluded;
     else if (looked_at) occlusion[index] += occluded;
     if (COUNT && looked_at) {

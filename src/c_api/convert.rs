@@ -54,7 +54,6 @@ pub fn reserved(value: u32) -> Outcome {
 }
 
 pub fn settings(given: &hs_settings) -> Outcome<Settings> {
-    reserved(given.reserved)?;
     let settings = Settings {
         technique: technique(given.technique)?,
         packet: (given.packet_width, given.packet_height),
@@ -74,6 +73,7 @@ pub fn settings(given: &hs_settings) -> Outcome<Settings> {
         filter_samples: given.filter_samples,
         percentage_closer: flag(given.percentage_closer, "percentage_closer")?,
         maps: given.maps,
+        near_points: given.near_points,
         bias: (given.bias != USUAL_BIAS).then_some(given.bias),
         counters: flag(given.counters, "counters")?,
     };
@@ -109,9 +109,9 @@ pub fn write_settings(target: &mut hs_settings, settings: &Settings) {
         filter_samples: settings.filter_samples,
         percentage_closer: settings.percentage_closer.into(),
         maps: settings.maps,
+        near_points: settings.near_points,
         bias: settings.bias.unwrap_or(USUAL_BIAS),
         counters: settings.counters.into(),
-        reserved: 0,
     };
 }
 

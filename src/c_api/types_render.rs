@@ -89,13 +89,14 @@ pub struct hs_settings {
     pub percentage_closer: u32,
     /// [1, 4096] REFERENCE_MAPS.
     pub maps: u32,
-    /// [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are rounded more than 32-bit floats
-    /// are need more of it than the technique's usual one.
+    /// [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are
+    /// rounded more than 32-bit floats are need more of it than the technique's usual one.
     pub bias: f32,
     /// 1 = count pixels, packets, nodes and edges, which takes time.
     pub counters: u32,
-    /// 0
-    pub reserved: u32,
+    /// [0, 4096] PACKET_CONTOUR with casters that the library knows beforehand: points of the light that cast hard
+    /// shadows, on all of it, in place of sub-lights that an occluder is nearer to than they are wide; 0 = none.
+    pub near_points: u32,
 }
 
 /// What a shot holds.

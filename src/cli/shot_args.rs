@@ -76,6 +76,10 @@ pub struct ShotArgs {
     /// With reference-maps: hard shadow maps from points on the light, 1 to 4096
     #[arg(long, value_name = "N", default_value_t = 1024)]
     maps: u32,
+    /// With packet-contour: points of the light that cast hard shadows, on all of it, where an occluder is nearer to
+    /// sub-lights than they are wide, 0 to 4096; 0 = integrate these as well
+    #[arg(long, value_name = "N", default_value_t = 197)]
+    near_points: u32,
     /// Count pixels, packets, nodes and edges (takes time)
     #[arg(long)]
     pub counters: bool,
@@ -131,6 +135,7 @@ impl ShotArgs {
             filter_samples: self.filter_samples,
             percentage_closer: self.percentage_closer,
             maps: self.maps,
+            near_points: self.near_points,
             bias: self.bias,
             counters: self.counters,
         }

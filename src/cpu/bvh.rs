@@ -2,7 +2,7 @@
 
 use std::ops::{ControlFlow, Range};
 
-use glam::{DVec3, Vec3, Vec3A};
+use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
@@ -19,14 +19,14 @@ const MARGIN: f64 = 1e-13;
 
 /// A bounding volume hierarchy over a scene's triangles.
 ///
-/// `obvhs` builds it: boxes are exact f32 bounds of f32 vertices, its nodes are public and it speaks
+/// `obvhs` builds it: boxes are f32 bounds of the vertices, rounded outwards, its nodes are public and it speaks
 /// glam. Its own traversal, in f32, is not used: `walk` tests the same boxes in f64 and
 /// conservatively, and triangles are intersected in f64 by the watertight test of [Woop, Benthin,
 /// Wald 2013], so a ray cannot slip between two triangles that share an edge.
 pub struct Bvh {
     tree: Bvh2,
     /// The triangles in the order of the tree's leaves: corners, and index in the scene.
-    corners: Vec<[Vec3; 3]>,
+    corners: Vec<[DVec3; 3]>,
     triangles: Vec<u32>,
     /// [scene units] The largest coordinate of all boxes.
     reach: f64,
@@ -59,10 +59,10 @@ impl Ray {
     }
 
     /// Where the line through the ray meets the triangle, edges included.
-    fn intersect(&self, corners: &[Vec3; 3]) -> Option<(f64, [f64; 3])> {
+    fn intersect(&self, corners: &[DVec3; 3]) -> Option<(f64, [f64; 3])> {
         let [kx, ky, kz] = self.axes;
         let [a, b, c] = corners.map(|corner| {
-            let p = corner.as_dvec3() - self.origin;
+            let p = corner - self.origin;
             let [sx, sy, sz] = self.shear;
             [p[kx] - sx * p[kz], p[ky] - sy * p[kz], sz * p[kz]]
         });
@@ -103,6 +103,15 @@ pub struct Hit {
     pub weights: [f64; 3],
 }
 
+/// The box of a triangle in f32, rounded outwards.
+fn bounds([a, b, c]: &[DVec3; 3]) -> Aabb {
+    let outwards = |exact: DVec3, next: fn(f32) -> f32| Vec3A::from(exact.as_vec3()).map(next);
+    Aabb {
+        min: outwards(a.min(*b).min(*c), f32::next_down),
+        max: outwards(a.max(*b).max(*c), f32::next_up),
+    }
+}
+
 impl Bvh {
     /// The scene relative to `origin` \[scene units, world\].
     ///
@@ -120,7 +129,6 @@ impl Bvh {
         let corners: Vec<_> = (0..scene.triangles.len())
             .map(|index| scene.corners_around(origin, index))
             .collect();
-        let bounds = |c: &[Vec3; 3]| Aabb::from_points(&c.map(Vec3A::from));
         let boxes: Vec<Aabb> = corners.iter().map(bounds).collect();
         let tree = build_bvh2(
             &boxes,
@@ -232,6 +240,7 @@ impl Bvh {
 mod tests {
     use super::*;
     use crate::scene::Shape;
+    use glam::Vec3;
     use proptest::prelude::*;
 
     /// A bumpy height field of 2 × `side`² triangles that share all their edges, over [−1, 1]².
@@ -275,9 +284,7 @@ mod tests {
                 }
                 // At the vertex, and halfway to its neighbours along the three kinds of edges.
                 for other in [index, index + 1, index + row, index + row - 1] {
-                    let target = (corner.as_vec3().as_dvec3()
-                        + scene.positions[other].as_vec3().as_dvec3())
-                        / 2.0;
+                    let target = (corner + scene.positions[other]) / 2.0;
                     let ray = Ray::new(eye, target - eye);
                     let hit = bvh.nearest(&ray, &mut stack, |_| true);
                     assert!(hit.is_some_and(|hit| hit.t < 1.0 + 1e-9), "{index} {other}");
@@ -304,9 +311,7 @@ mod tests {
             let mut rays = 0;
             for eye in offsets.map(|offset| middle + offset) {
                 for triangle in 0..scene.triangles.len() {
-                    let corners = scene
-                        .corners_around(DVec3::ZERO, triangle)
-                        .map(|corner| corner.as_dvec3());
+                    let corners = scene.corners(triangle);
                     for (from, share) in (0..3).flat_map(|i| [0.0, 0.25, 0.5].map(|t| (i, t))) {
                         let target = corners[from].lerp(corners[(from + 1) % 3], share);
                         let ray = Ray::new(eye, target - eye);
@@ -359,7 +364,7 @@ mod tests {
             let scene = Scene { positions, triangles, ..Scene::default() };
             let bvh = Bvh::new(&scene, DVec3::ZERO).unwrap();
             let ray = Ray::new(vector(origin), vector(direction));
-            let distances = (0..corners.len()).filter_map(|i| ray.intersect(&scene.corners_around(DVec3::ZERO, i)));
+            let distances = (0..corners.len()).filter_map(|i| ray.intersect(&scene.corners(i)));
             let expected = distances.map(|(t, _)| t).filter(|&t| t > 0.0).reduce(f64::min);
             let mut stack = Vec::new();
             let found = bvh.nearest(&ray, &mut stack, |_| true).map(|hit| hit.t);

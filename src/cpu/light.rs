@@ -63,6 +63,17 @@ impl Emitter {
         self.center + self.axes[0] * s + self.axes[1] * t
     }
 
+    /// The share of the way from `start` to a point of the light that ends `height` \[scene units\] over the light's plane,
+    /// or as near to a light that has none.
+    pub fn share_before(&self, start: DVec3, on_light: DVec3, height: f64) -> f64 {
+        let way = on_light - start;
+        let rise = match self.normal {
+            Some(shines) => shines.dot(way).abs(),
+            None => way.length(),
+        };
+        1.0 - height / rise
+    }
+
     /// [0, 1] The share of the light's area that is in front of the plane through `point` with
     /// `normal`; 0 where `point` is not on the side that the light shines to. Heights up to what rounding makes of them on
     /// the device ([`HORIZON_ROUNDING`]) count as none, for both.

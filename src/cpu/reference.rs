@@ -24,10 +24,6 @@ pub const BATCHES: u32 = 8;
 /// cannot be told from the surface itself.
 const OFFSET: f64 = 1.0 / (1 << 21) as f64;
 
-/// Shadow rays end this share of their length before the light, so that a lamp's own surface, in the
-/// plane of its light up to rounding, casts no shadow.
-const BEFORE_LIGHT: f64 = 1.0 - 1.0 / (1 << 20) as f64;
-
 /// How well to trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReferenceOptions {
@@ -145,6 +141,8 @@ struct Tracer<'a> {
     /// [scene units] What the camera sees is farther away, along its axis.
     near: f64,
     emitter: Emitter,
+    /// [scene units] See [`Shot::touch`].
+    touch: f64,
     width: usize,
     batch_samples: u32,
     seed: u64,
@@ -176,6 +174,7 @@ impl<'a> Tracer<'a> {
             near: shot.camera.near.unwrap_or(0.0),
             pinhole: Pinhole::new(&shot.camera, shot.width, shot.height)?,
             emitter: Emitter::new(area_light, shot.origin())?,
+            touch: shot.touch(area_light),
             width: shot.width as usize,
             batch_samples: options.samples.div_ceil(BATCHES),
             seed: options.seed,
@@ -265,16 +264,18 @@ impl<'a> Tracer<'a> {
         }
         let start = receiver.point + receiver.normal * receiver.offset;
         let ray = Ray::new(start, on_light - start);
+        // A lamp's own surface casts no shadow.
+        let end = self.emitter.share_before(start, on_light, self.touch);
         let opaque = |hit: &Hit| self.opaque(hit);
         let again = |slot| {
             self.bvh
-                .test(&ray, slot, BEFORE_LIGHT)
+                .test(&ray, slot, end)
                 .is_some_and(|hit| opaque(&hit))
         };
         if scratch.last_occluder.is_some_and(again) {
             return true;
         }
-        let occluder = self.bvh.any(&ray, &mut scratch.stack, BEFORE_LIGHT, opaque);
+        let occluder = self.bvh.any(&ray, &mut scratch.stack, end, opaque);
         scratch.last_occluder = occluder.or(scratch.last_occluder);
         occluder.is_some()
     }
@@ -286,8 +287,7 @@ impl<'a> Tracer<'a> {
     }
 
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        let corners = self.scene.corners_around(self.origin, triangle);
-        corners.map(|corner| corner.as_dvec3())
+        self.scene.corners_around(self.origin, triangle)
     }
 
     fn double_sided(&self, triangle: usize) -> bool {

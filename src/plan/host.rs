@@ -2,16 +2,17 @@
 
 use glam::DVec3;
 
+use super::light::Placed;
 use super::memory::Inventory;
 use super::survey::Survey;
-use super::views::{Site, whole_light};
+use super::views::whole_light;
 use super::{Casters, Front, Outputs, Plan};
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
 use crate::shared;
 use crate::shot::{MAX_SIZE, Settings};
-use crate::technique::Recipe;
+use crate::technique::{self, Recipe};
 
 /// What a host's frames have in common.
 #[derive(Debug, Clone)]
@@ -83,12 +84,14 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     let found = Survey {
         receivers: true,
         casters: true,
-        faces: [true, false, false, false, false].map(|front| front || host.side_faces),
+        tangents: [if host.side_faces { f64::INFINITY } else { 0.0 }; 4],
+        near: Vec::new(),
     };
-    plan.add_light(settings, HOST_ORIGIN, &host.light, found, [0.0; 3]);
+    let parts = technique::parts(&host.light, &settings.of_light(&host.light));
+    plan.add_light(settings, &placed(&host.light), parts, &found);
     if host.casters == Casters::Maps {
         // A host's map may be turned any way.
-        for view in plan.lights.iter_mut().flat_map(|light| &mut light.views) {
+        for view in plan.views_mut() {
             view.variant.oblique = true;
         }
     }
@@ -105,8 +108,15 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     Ok(plan)
 }
 
-/// A host's positions are relative to whatever origin it has chosen.
-const HOST_ORIGIN: DVec3 = DVec3::ZERO;
+/// A light among a host's positions, which are relative to whatever origin it has chosen.
+fn placed(light: &AreaLight) -> Placed<'_> {
+    Placed {
+        light,
+        origin: DVec3::ZERO,
+        touch: light.touch(light.center.abs().max_element()),
+        radiance: [0.0; 3],
+    }
+}
 
 impl Plan {
     /// Moves the light of a host's frame, and its views, to where they stand now. Takes no memory.
@@ -114,6 +124,7 @@ impl Plan {
     /// # Errors
     /// The light is of another shape than the one that was planned.
     pub fn place(&mut self, light: &AreaLight) -> Result<()> {
+        let placed = placed(light);
         for planned in &mut self.lights {
             let round = matches!(light.shape, crate::scene::LightShape::Disc { .. });
             let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2]);
@@ -125,11 +136,13 @@ impl Plan {
             let views =
                 planned.light.view_first..planned.light.view_first + planned.light.view_count;
             let weight_sum = planned.light.weight_sum;
-            planned.light = whole_light(HOST_ORIGIN, light, [0.0; 3], weight_sum, views);
-            let site = Site::new(HOST_ORIGIN, &planned.settings, self.levels);
-            for view in &mut planned.views {
-                let sector_first = view.view.sector_first;
-                view.view = view.aspect.view(&site, light, sector_first);
+            planned.light = whole_light(placed.origin, light, placed.radiance, weight_sum, views);
+            for set in &mut planned.sets {
+                let site = placed.site(&set.settings, self.levels);
+                for view in &mut set.views {
+                    let sector_first = view.view.sector_first;
+                    view.view = view.aspect.view(&site, light, sector_first);
+                }
             }
         }
         Ok(())

@@ -38,7 +38,7 @@ impl Plan {
             }
         }
         let levels = self.levels;
-        for view in self.lights.iter_mut().flat_map(|light| &mut light.views) {
+        for view in self.views_mut() {
             view.view.levels_max = levels.max(1);
         }
         Ok(())
@@ -56,9 +56,9 @@ impl Plan {
 
     /// [dispatch] In how many rounds a list is worked off at most.
     pub fn rounds(&self) -> u32 {
-        let recipes = self.lights.iter().map(|light| &light.recipe);
-        let per_cell = recipes
-            .map(|recipe| recipe.turns * recipe.layers.max(1))
+        let per_cell = self
+            .sets()
+            .map(|set| set.recipe.turns * set.recipe.layers.max(1))
             .max();
         let turns = u64::from(self.map) * u64::from(self.map) * u64::from(per_cell.unwrap_or(0));
         turns

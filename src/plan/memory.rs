@@ -10,8 +10,9 @@ use crate::shot::Settings;
 use crate::technique::{Recipe, Work};
 
 /// Resources that the host fills or reads, by way of memory that it sees.
-const COPIED: [&str; 12] = [
+const COPIED: [&str; 13] = [
     "positions",
+    "position_residuals",
     "triangles",
     "triangle_surfaces",
     "triangle_planes",
@@ -62,14 +63,11 @@ impl Plan {
         let rounds = self.rounds();
         // Of packets and of pixels, a pair for each view.
         let lists = if any(Recipe::has_lists) { views } else { 0 };
-        let recipes = || self.lights.iter().filter(|light| !light.views.is_empty());
-        let layers = recipes()
-            .map(|light| light.recipe.layers)
-            .max()
-            .unwrap_or(0);
+        let layers = self.sets().map(|set| set.recipe.layers);
+        let layers = layers.max().unwrap_or(0);
         let words = match rounds {
             1 => None,
-            _ => recipes().map(|light| light.recipe.words).max(),
+            _ => self.sets().map(|set| set.recipe.words).max(),
         };
         let words = words.unwrap_or(0);
         let grid = u64::from(self.size.0.div_ceil(settings.packet.0))
@@ -94,6 +92,10 @@ impl Plan {
         let fitted = u64::from(matches!(self.casters, Casters::Scene | Casters::Gathered));
         self.resources = vec![
             ("positions", vertices * 12),
+            (
+                "position_residuals",
+                if views > 0 { drawn * vertices * 12 } else { 0 },
+            ),
             ("triangles", triangles * 12),
             ("triangle_surfaces", drawn * triangles * 4),
             ("triangle_planes", drawn * triangles * 16),

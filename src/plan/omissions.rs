@@ -31,9 +31,9 @@ impl Plan {
         if !self.outputs.picture {
             self.omit("shade", "only visibility is asked for");
         }
-        let kept = self.lights.iter().find(|light| !light.views.is_empty());
-        if let Some(light) = kept.filter(|_| retained) {
-            let names: Vec<&str> = (self.map_passes(light).iter())
+        let kept = self.sets().next().filter(|_| retained);
+        if let Some(set) = kept {
+            let names: Vec<&str> = (self.map_passes(set).iter())
                 .map(|(name, _)| *name)
                 .collect();
             self.omit(
@@ -64,10 +64,18 @@ impl Plan {
             }
             Outcome::Shadowed => {}
         }
-        let one_view = planned.views.len() == 1;
-        let faces = planned.views.len() / planned.part_count.max(1);
-        let parts = planned.part_count as u32;
-        let recipe = planned.recipe.clone();
+        let one_view = planned.views().count() == 1;
+        let one_face = planned.views().all(|view| view.view.face == 0);
+        let (parts, near) = (planned.part_count as u32, planned.near_count as u32);
+        let reach =
+            (planned.sets.iter()).fold(90.0, |least: f64, set| least.min(set.reach_degrees()));
+        let recipe = planned.sets[0].recipe.clone();
+        if near > 0 {
+            self.omit(
+                format!("{name}: contours of {near} of {parts} sub-lights"),
+                "an occluder is nearer to each than it is wide: the hard shadows of points stand for it",
+            );
+        }
         if shot.lights[index].is_point() {
             self.omit(
                 format!("{name}: mssm, kernels, packets"),
@@ -77,10 +85,10 @@ impl Plan {
         if one_view {
             self.omit(format!("{name}: accumulation"), "it has a single view");
         }
-        if faces == 1 {
+        if one_face {
             self.omit(
                 format!("{name}: side faces"),
-                "every receiver lies within 60° of the light's axis",
+                format!("every receiver lies within {reach:.0}° of the light's axis"),
             );
         }
         let cells = shot.settings.split * shot.settings.split;
@@ -90,7 +98,7 @@ impl Plan {
                 "the disc's rim leaves nothing of them",
             );
         }
-        if !recipe.mssm && !shot.lights[index].is_point() {
+        if !recipe.mssm && !shot.lights[index].is_point() && near < parts {
             self.omit(
                 format!("{name}: mssm, kernels, lists"),
                 format!(

@@ -1,6 +1,6 @@
 //! The passes of a frame, in the order in which they are recorded.
 
-use super::{Casters, Front, LightPlan, Plan};
+use super::{Casters, Front, Plan, ViewSet};
 use crate::technique::Recipe;
 
 impl Plan {
@@ -29,10 +29,12 @@ impl Plan {
             add("clear_lists", u32::from(self.needs(Recipe::has_lists)));
         }
         for light in &self.lights {
-            let count = light.views.len() as u32;
             add("clear_occlusion", u32::from(light.accumulates()));
-            for (name, times) in self.view_passes(light, retained) {
-                add(name, count * times);
+            for set in &light.sets {
+                let count = set.views.len() as u32;
+                for (name, times) in self.view_passes(set, retained) {
+                    add(name, count * times);
+                }
             }
             add("resolve", 1);
         }
@@ -41,29 +43,25 @@ impl Plan {
         self.passes = passes;
     }
 
-    /// What is recorded for each view of a light, in this order, and how often.
-    pub(super) fn view_passes(
-        &self,
-        light: &LightPlan,
-        retained: bool,
-    ) -> Vec<(&'static str, u32)> {
+    /// What is recorded for each view of a set, in this order, and how often.
+    pub(super) fn view_passes(&self, set: &ViewSet, retained: bool) -> Vec<(&'static str, u32)> {
         let mut passes = match retained {
             true => Vec::new(),
-            false => self.map_passes(light),
+            false => self.map_passes(set),
         };
-        passes.extend(light.recipe.stages.iter().map(|stage| (stage.name, 1)));
+        passes.extend(set.recipe.stages.iter().map(|stage| (stage.name, 1)));
         passes
     }
 
     /// What is recorded for a view's shadow map, and for what is built on it.
-    pub(super) fn map_passes(&self, light: &LightPlan) -> Vec<(&'static str, u32)> {
+    pub(super) fn map_passes(&self, set: &ViewSet) -> Vec<(&'static str, u32)> {
         let names: &[&str] = match self.casters {
             Casters::Scene | Casters::Gathered => &["receivers", "casters", "fit", "shadow_map"],
             Casters::DrawnByHost => &["receivers", "region", "fit", "projection", "shadow_map"],
             Casters::Maps => &["receivers", "fit", "shadow_map"],
         };
         let mut passes: Vec<_> = names.iter().map(|&name| (name, 1)).collect();
-        let recipe = &light.recipe;
+        let recipe = &set.recipe;
         if recipe.mssm {
             passes.push(("mssm", self.levels));
         }

@@ -5,24 +5,43 @@
 use glam::{DVec2, DVec3};
 
 use crate::scene::{AreaLight, LightShape};
-use crate::shared::FRONT_REACH;
 use crate::shot::Shot;
+use crate::sub_light::Part;
 
 use super::camera::Frustum;
 
 /// The answer for one light.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
     /// A visible surface may lie in front of the light and face it.
     pub receivers: bool,
     /// A triangle may stand between the light and such a surface.
     pub casters: bool,
-    /// Which faces may have receivers: front, ±u, ±v.
-    pub faces: [bool; 5],
+    /// The largest tangents towards +u, −u, +v, −v under which parts of the light see receivers.
+    pub tangents: [f64; 4],
+    /// Of each part of the light, whether a triangle that may cast stands before it, nearer than the part is wide. None
+    /// where nobody asked.
+    pub near: Vec<bool>,
+}
+
+impl Survey {
+    /// The faces that may have receivers, where the front one holds those within a tangent: 0 = front; 1, 2 = ±u; 3, 4 = ±v.
+    pub fn faces(&self, reach: f32) -> Vec<usize> {
+        let side = |&side: &usize| self.tangents[side - 1] > f64::from(reach);
+        [0].into_iter().chain((1..5).filter(side)).collect()
+    }
+
+    /// [sub-light] Parts that an occluder is near to.
+    pub fn near_count(&self) -> usize {
+        self.near.iter().filter(|near| **near).count()
+    }
 }
 
 /// Rounding of plane distances, relative to the coordinates' magnitude, as in `casters.comp`.
 const ROUNDING: f64 = 2e-6;
+
+/// The same of what is found from corners and the light alone.
+const CORNER_ROUNDING: f64 = 2.4e-7;
 
 /// A light in its own frame, relative to the camera's eye.
 struct Placed {
@@ -30,13 +49,16 @@ struct Placed {
     axes: [DVec3; 3],
     half: DVec2,
     round: bool,
+    /// [scene units] Height up to which surfaces are the lamp's own.
+    touch: f64,
 }
 
 impl Placed {
-    fn new(light: &AreaLight, origin: DVec3) -> Self {
+    fn new(shot: &Shot, light: &AreaLight) -> Self {
         let (u, v, n) = light.frame();
         Self {
-            center: light.center - origin,
+            center: light.center - shot.origin(),
+            touch: shot.touch(light),
             axes: [u, v, n],
             half: light.half_size().into(),
             round: matches!(light.shape, LightShape::Disc { .. }),
@@ -59,17 +81,19 @@ impl Placed {
     }
 }
 
-pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight) -> Survey {
+/// `parts`: of the light.
+pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight, parts: &[Part]) -> Survey {
     let (scene, origin) = (&*shot.scene, shot.origin());
-    let placed = Placed::new(light, origin);
+    let placed = Placed::new(shot, light);
     let mut found = Survey {
         receivers: false,
         casters: false,
-        faces: [false; 5],
+        tangents: [0.0; 4],
+        near: Vec::new(),
     };
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for index in 0..scene.triangles.len() {
-        let corners = scene.corners(index).map(|corner| corner - origin);
+        let corners = scene.corners_around(origin, index);
         let mut polygon = frustum.clip(corners);
         let double_sided = scene.material_of(index).double_sided;
         if polygon.is_empty() || !may_face(&placed, corners, double_sided) {
@@ -82,16 +106,27 @@ pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight) -> Survey {
         for &point in &polygon {
             found.receivers = true;
             (lower, upper) = (lower.min(point), upper.max(point));
-            mark_faces(&mut found.faces, point, placed.half);
+            widen(&mut found.tangents, point, placed.half);
         }
     }
-    found.casters = found.receivers
-        && (0..scene.triangles.len()).any(|index| {
-            let corners = scene
-                .corners(index)
-                .map(|corner| placed.to_light(corner - origin));
-            may_cast(&placed, corners, lower, upper)
-        });
+    if !found.receivers {
+        return found;
+    }
+    let mut near = match shot.settings.of_light(light).has_near_points() {
+        true => Near::new(&placed, parts),
+        false => Near::nobody_asked(),
+    };
+    for index in 0..scene.triangles.len() {
+        let corners = scene.corners_around(origin, index);
+        let corners = corners.map(|corner| placed.to_light(corner));
+        if (found.casters && near.is_out_of(&corners)) || !may_cast(&placed, corners, lower, upper)
+        {
+            continue;
+        }
+        found.casters = true;
+        near.mark(&corners);
+    }
+    found.near = near.found;
     found
 }
 
@@ -112,30 +147,98 @@ fn may_face(light: &Placed, corners: [DVec3; 3], double_sided: bool) -> bool {
             > -ROUNDING * normal.length() * magnitude
 }
 
-fn mark_faces(faces: &mut [bool; 5], point: DVec3, half: DVec2) {
+fn widen(tangents: &mut [f64; 4], point: DVec3, half: DVec2) {
     // Seen from whichever sub-light: their centres lie within the light's half sizes.
-    let reach = f64::from(FRONT_REACH) * point.z;
     let sides = [point.x, -point.x, point.y, -point.y];
     let halves = [half.x, half.x, half.y, half.y];
-    faces[0] = true;
     for side in 0..4 {
-        faces[side + 1] |= sides[side] + halves[side] > reach;
+        let way = sides[side] + halves[side];
+        if way > 0.0 {
+            tangents[side] = tangents[side].max(way / point.z);
+        }
+    }
+}
+
+/// Looks for occluders that stand before parts of a light, nearer than these are wide.
+struct Near {
+    /// [scene units] The parts' cells in the light's plane.
+    cells: Vec<(DVec2, DVec2)>,
+    /// [scene units] Between which heights over the light's plane a triangle is near.
+    heights: (f64, f64),
+    found: Vec<bool>,
+}
+
+impl Near {
+    fn nobody_asked() -> Self {
+        Self {
+            cells: Vec::new(),
+            heights: (0.0, 0.0),
+            found: Vec::new(),
+        }
+    }
+
+    fn new(light: &Placed, parts: &[Part]) -> Self {
+        let cell = |part: &Part| {
+            let (lower, upper) = part.cell();
+            (lower * light.half, upper * light.half)
+        };
+        let cells: Vec<_> = parts.iter().map(cell).collect();
+        let widths = cells
+            .iter()
+            .map(|(lower, upper)| (upper - lower).max_element());
+        let width = widths.fold(0.0, f64::max);
+        Self {
+            heights: (light.touch, width),
+            found: vec![false; cells.len()],
+            cells,
+        }
+    }
+
+    /// Whether a triangle in the light's frame is not near to any part.
+    fn is_out_of(&self, corners: &[DVec3; 3]) -> bool {
+        let (lowest, highest) = self.heights;
+        corners.iter().all(|corner| corner.z <= lowest)
+            || corners.iter().all(|corner| corner.z >= highest)
+    }
+
+    fn mark(&mut self, corners: &[DVec3; 3]) {
+        if self.is_out_of(corners) {
+            return;
+        }
+        let (lowest, highest) = self.heights;
+        let mut slab = corners.to_vec();
+        clip(&mut slab, |point| point.z - lowest);
+        clip(&mut slab, |point| highest - point.z);
+        for (&(lower, upper), found) in self.cells.iter().zip(&mut self.found) {
+            if *found {
+                continue;
+            }
+            let mut before = slab.clone();
+            for axis in 0..2 {
+                clip(&mut before, |point| point[axis] - lower[axis]);
+                clip(&mut before, |point| upper[axis] - point[axis]);
+            }
+            *found = !before.is_empty();
+        }
     }
 }
 
 /// `corners`, `lower` and `upper` (the receivers' box) in the light's frame.
 fn may_cast(light: &Placed, corners: [DVec3; 3], lower: DVec3, upper: DVec3) -> bool {
-    if corners.iter().all(|corner| corner.z <= 0.0)
+    if corners.iter().all(|corner| corner.z <= light.touch)
         || corners.iter().all(|corner| corner.z >= upper.z)
     {
         return false;
     }
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     let rounding = ROUNDING * normal.length();
-    let of_corner = rounding * (corners[0].abs() + light.center.abs()).element_sum();
+    let of_corner = corners[0].abs().element_sum() * normal.length();
+    let of_center = rounding * light.center.abs().element_sum();
     let reaches = |normal: DVec3| {
-        let plane = normal.dot(corners[0]) + of_corner;
-        light.reach(normal) > plane || farthest_along(lower, upper, normal, rounding) > plane
+        let plane = normal.dot(corners[0]);
+        light.reach(normal) > plane + CORNER_ROUNDING * of_corner
+            || farthest_along(lower, upper, normal, rounding)
+                > plane + ROUNDING * of_corner + of_center
     };
     reaches(normal) && reaches(-normal)
 }

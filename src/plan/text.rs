@@ -2,7 +2,8 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use super::{LightPlan, Outcome, Plan};
+use super::{LightPlan, Outcome, Plan, ViewSet};
+use crate::shot::Technique;
 
 const MSSM_LEVELS: &str = "mssm levels";
 
@@ -73,28 +74,32 @@ impl Plan {
             Outcome::Unshadowed => writeln!(out, "casts no shadow on anything visible"),
             Outcome::Shadowed => {
                 writeln!(out, "casts shadows")?;
-                self.write_views(out, light)
+                (light.sets.iter()).try_for_each(|set| self.write_views(out, set))
             }
         }
     }
 
-    fn write_views(&self, out: &mut Formatter, light: &LightPlan) -> Result {
+    fn write_views(&self, out: &mut Formatter, set: &ViewSet) -> Result {
         let faces: Vec<&str> = (0..FACES.len())
-            .filter(|&face| (light.views.iter()).any(|view| view.view.face as usize == face))
+            .filter(|&face| (set.views.iter()).any(|view| view.view.face as usize == face))
             .map(|face| FACES[face])
             .collect();
+        let part = match set.settings.technique {
+            Technique::ReferenceMaps => "point",
+            _ => "sub-light",
+        };
         writeln!(
             out,
             "  views       {}: {} {} x {} {} ({})",
-            light.views.len(),
-            light.part_count,
-            plural(light.part_count, "sub-light"),
+            set.views.len(),
+            set.part_count,
+            plural(set.part_count, part),
             faces.len(),
             plural(faces.len(), "face"),
             faces.join(", ")
         )?;
-        writeln!(out, "  shadow map  {0}x{0} texels", self.map)?;
-        if light.recipe.mssm {
+        writeln!(out, "  shadow map  {0}x{0} texels", set.settings.map)?;
+        if set.recipe.mssm {
             let (width, height) = self.size;
             let levels = self.levels;
             writeln!(
@@ -104,7 +109,7 @@ impl Plan {
             )?;
             writeln!(out, "  kernels     {width}x{height}, one for each pixel")?;
         }
-        if light.recipe.has(crate::technique::Work::PacketList) {
+        if set.recipe.has(crate::technique::Work::PacketList) {
             let (width, height) = self.packet;
             writeln!(
                 out,
@@ -113,7 +118,7 @@ impl Plan {
                 self.size.1.div_ceil(height)
             )?;
         }
-        let passes = self.view_passes(light, self.is_retained());
+        let passes = self.view_passes(set, self.is_retained());
         let passes: Vec<String> = passes
             .iter()
             .map(|&(name, times)| match times {

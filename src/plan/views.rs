@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::scene::{AreaLight, LightShape};
-use crate::shared::{self, FRONT_REACH, View};
-use crate::shot::{Settings, Shot};
+use crate::shared::{self, View};
+use crate::shot::Shot;
 use crate::sub_light::Part;
 
 /// What a light's views are fitted to, beside the light itself.
@@ -18,20 +18,10 @@ pub struct Site {
     pub map: u32,
     /// [texel] Slope bias.
     pub bias: f32,
+    /// [scene units] Height over the light's plane up to which surfaces are the lamp's own.
+    pub touch: f64,
     /// [level] MSSM levels that there is memory for.
     pub levels: u32,
-}
-
-impl Site {
-    /// `settings`: as they run for the light.
-    pub fn new(origin: DVec3, settings: &Settings, levels: u32) -> Self {
-        Self {
-            origin,
-            map: settings.map,
-            bias: settings.bias(),
-            levels,
-        }
-    }
 }
 
 /// Which part of a light a view looks from, and in which direction.
@@ -40,8 +30,8 @@ pub struct Aspect {
     pub part: Part,
     /// 0 = front; 1, 2 = along ±u; 3, 4 = along ±v.
     pub face: usize,
-    /// Whether the light has side faces.
-    pub sides: bool,
+    /// Tangent up to which the front face holds receivers; the largest there is where the light has no side faces.
+    pub reach: f32,
 }
 
 impl Aspect {
@@ -68,8 +58,11 @@ impl Aspect {
             [center.x as f32, center.y as f32, radius as f32]
         });
         let (half, (lower, upper)) = (part.half_size, part.extent);
+        let center = part.center - site.origin;
         View {
-            center: array(part.center - site.origin),
+            center: array(center),
+            center_residual: array(center - center.as_vec3().as_dvec3()),
+            touch: site.touch as f32,
             right: array(right),
             up: array(up),
             forward: array(forward),
@@ -85,10 +78,10 @@ impl Aspect {
             ],
             rim,
             area: part.area as f32,
-            weight: part.area as f32,
+            weight: self.part.weight() as f32,
             sector_first,
             face: self.face as u32,
-            reach: if self.sides { FRONT_REACH } else { f32::MAX },
+            reach: self.reach,
             map_size: site.map,
             bias: site.bias,
             levels_max: site.levels.max(1),
@@ -122,8 +115,8 @@ pub fn whole_light(
 
 /// Sum of the parts' weights in f32, in the order in which the views add up, so that a fully hidden light is
 /// exactly so.
-pub fn weight_sum(parts: &[Part]) -> f32 {
-    let weights = parts.iter().map(|part| part.area() as f32);
+pub fn weight_sum<'a>(parts: impl Iterator<Item = &'a Part>) -> f32 {
+    let weights = parts.map(|part| part.weight() as f32);
     weights.fold(0.0, |sum, weight| sum + weight)
 }
 

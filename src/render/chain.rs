@@ -36,20 +36,14 @@ impl Chain {
     ) -> Result<Self> {
         let mut known = BTreeMap::new();
         let (mut passes, mut of_view) = (Vec::new(), Vec::new());
-        for light in &plan.lights {
-            for planned in &light.views {
-                let key = (planned.variant, &light.recipe);
+        for set in plan.sets() {
+            for planned in &set.views {
+                let key = (planned.variant, &set.recipe);
                 let index = match known.get(&key) {
                     Some(&index) => index,
                     None => {
-                        passes.push(ViewPasses::new(
-                            gpu,
-                            plan,
-                            light,
-                            planned.variant,
-                            resources,
-                            maps,
-                        )?);
+                        let variant = planned.variant;
+                        passes.push(ViewPasses::new(gpu, plan, set, variant, resources, maps)?);
                         known.insert(key, passes.len() - 1);
                         passes.len() - 1
                     }
@@ -105,7 +99,7 @@ impl Chain {
                 if !retained {
                     passes.record_map(commands, plan, resources, maps, view)?;
                 }
-                passes.record_stages(commands, plan, resources, view)?;
+                passes.record_stages(commands, resources, view)?;
             }
             let push = Push {
                 index: index as u32,

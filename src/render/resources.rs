@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::{DVec3, Vec3};
+
 use crate::error::Result;
 use crate::gpu::{Buffer, Gpu, Image, ImageKind, Resources};
 use crate::plan::{Front, Plan};
@@ -30,6 +32,7 @@ pub fn create_for_host(gpu: &Arc<Gpu>, plan: &Plan, costs: shared::Costs) -> Res
     let mut resources = create_common(gpu, plan, costs)?;
     let names = [
         "positions",
+        "position_residuals",
         "triangles",
         "surfaces",
         "texcoords",
@@ -107,6 +110,8 @@ fn create_scene(gpu: &Arc<Gpu>, plan: &Plan, shot: &Shot, resources: &mut Resour
         }
     }
     add("positions", bytemuck::cast_slice(&positions))?;
+    let residuals = residuals(scene, shot.origin(), &positions);
+    add("position_residuals", bytemuck::cast_slice(&residuals))?;
     add("triangles", bytemuck::cast_slice(&scene.triangles))?;
     add(
         "triangle_surfaces",
@@ -119,12 +124,20 @@ fn create_scene(gpu: &Arc<Gpu>, plan: &Plan, shot: &Shot, resources: &mut Resour
     add("texels", &texels)
 }
 
-/// The planes of all triangles: the unit normal n of the front and n · x, worked out in f64 from the corners that the device
-/// has, for positions are found from them however large a triangle is.
+/// What rounding has left over of positions relative to `origin`.
+fn residuals(scene: &Scene, origin: DVec3, rounded: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let residual = |(exact, rounded): (&DVec3, &[f32; 3])| {
+        let rounded = Vec3::from_array(*rounded).as_dvec3();
+        (exact - origin - rounded).as_vec3().to_array()
+    };
+    scene.positions.iter().zip(rounded).map(residual).collect()
+}
+
+/// The planes of all triangles: the unit normal n of the front and n · x, worked out in f64, for positions are found from
+/// them however large a triangle is.
 fn planes(shot: &Shot) -> Vec<[f32; 4]> {
     let plane = |index| {
-        let corners = shot.scene.corners_around(shot.origin(), index);
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let [a, b, c] = shot.scene.corners_around(shot.origin(), index);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         normal.extend(normal.dot(a)).as_vec4().to_array()
     };
@@ -198,7 +211,7 @@ fn side(plan: &Plan, name: &str, size: (u32, u32)) -> (u32, u32) {
 
 fn create_images(gpu: &Arc<Gpu>, plan: &Plan, resources: &mut Resources) -> Result<()> {
     let map = (plan.map.max(1), plan.map.max(1));
-    let layers = plan.lights.iter().map(|light| light.recipe.layers);
+    let layers = plan.sets().map(|set| set.recipe.layers);
     let layers = layers.max().unwrap_or(0).max(1);
     let images = [
         (

@@ -1,13 +1,13 @@
 //! Specialization constants: `glsl/lib/constants.glsl` on the host's side.
 
 use crate::gpu::Specialization;
-use crate::plan::{Casters, LightPlan, Plan, Variant};
+use crate::plan::{Casters, Plan, Variant, ViewSet};
 use crate::shot::{Leaf, Mapping, Pattern, Technique};
 use crate::technique::Work;
 
 /// Constants of the passes of a view.
-pub fn of_view(plan: &Plan, light: &LightPlan, variant: Variant, work: Work) -> Specialization {
-    let settings = &light.settings;
+pub fn of_view(plan: &Plan, set: &ViewSet, variant: Variant, work: Work) -> Specialization {
+    let settings = &set.settings;
     // Whoever walks the pixel list has packets of one pixel; so have techniques without packets.
     let packets = settings.technique == Technique::PacketContour && work != Work::PixelList;
     let packet = if packets { settings.packet } else { (1, 1) };
@@ -30,7 +30,7 @@ pub fn of_view(plan: &Plan, light: &LightPlan, variant: Variant, work: Work) -> 
         (10, held),
         (11, plan.loop_turns),
         (12, plan.rounds()),
-        (13, light.recipe.layers.max(1)),
+        (13, set.recipe.layers.max(1)),
         (15, u32::from(gap_filling)),
         (16, u32::from(settings.has_contours())),
         (17, settings.light_samples),
@@ -39,6 +39,7 @@ pub fn of_view(plan: &Plan, light: &LightPlan, variant: Variant, work: Work) -> 
         (20, settings.filter_samples),
         (21, u32::from(filter_reach)),
         (23, u32::from(plan.casters == Casters::Maps)),
+        (25, u32::from(plan.casters == Casters::Scene)),
     ]
 }
 

@@ -8,7 +8,7 @@ use crate::gpu::{
     Attachments, Commands, ComputePass, Draw, Gpu, GraphicsPass, GraphicsState, Groups, Resources,
     Sources, Specialization,
 };
-use crate::plan::{Casters, LightPlan, Plan, Variant};
+use crate::plan::{Casters, Plan, Variant, ViewSet};
 use crate::shared::{Fit, GROUP_SIZE, Push, Round, TILE_SIZE};
 use crate::technique::{Stage, Work};
 
@@ -27,7 +27,7 @@ pub enum Maps<'a> {
     Given(usize),
 }
 
-/// Pipelines of the views of one variant of a light.
+/// Pipelines of the views of one variant in a set.
 pub struct ViewPasses {
     receivers: ComputePass,
     fit: ComputePass,
@@ -37,6 +37,8 @@ pub struct ViewPasses {
     mssm: Option<ComputePass>,
     hsm: Option<ComputePass>,
     stages: Vec<(Stage, ComputePass)>,
+    /// [texel] Side of the map.
+    side: u32,
     layers: u32,
     /// [dispatch] In how many rounds lists are worked off at most.
     rounds: u32,
@@ -136,6 +138,7 @@ impl CasterPasses {
         commands: &mut Commands,
         name: &'static str,
         resources: &Resources,
+        side: u32,
         push: Push,
     ) -> Result<()> {
         let fits = resources.buffer("fits")?;
@@ -148,16 +151,18 @@ impl CasterPasses {
         let masked = (self.masked.as_ref())
             .map(|masked| (masked.with(0), casters(offset_of!(Fit, masked_draw))));
         let draws = [Some(opaque), masked].into_iter().flatten();
-        commands.draw(name, push, &into_map(resources)?, draws);
+        commands.draw(name, push, &into_map(resources, side)?, draws);
         Ok(())
     }
 }
 
-/// The shadow map, but for its margin.
-fn into_map(resources: &Resources) -> Result<Attachments<'static>> {
+/// A shadow map of `side` × `side` texels, but for its margin.
+fn into_map(resources: &Resources, side: u32) -> Result<Attachments<'static>> {
+    let mut target = resources.image("shadow_map")?.target();
+    target.size = (side, side);
     Ok(Attachments {
         colors: &[],
-        depth: Some(resources.image("shadow_map")?.target()),
+        depth: Some(target),
         margin: MAP_MARGIN,
     })
 }
@@ -166,13 +171,13 @@ impl ViewPasses {
     pub fn new(
         gpu: &Arc<Gpu>,
         plan: &Plan,
-        light: &LightPlan,
+        set: &ViewSet,
         variant: Variant,
         resources: &Resources,
         maps: &[Resources],
     ) -> Result<Self> {
-        let recipe = &light.recipe;
-        let constants = |work| specialization::of_view(plan, light, variant, work);
+        let recipe = &set.recipe;
+        let constants = |work| specialization::of_view(plan, set, variant, work);
         let compute = |name: &str, shader: &str, work| {
             ComputePass::new(gpu, name, shader, &constants(work), resources)
         };
@@ -197,6 +202,7 @@ impl ViewPasses {
             mssm: structure(recipe.mssm, "mssm", mssm)?,
             hsm: structure(recipe.hsm, "hsm", "hsm.comp")?,
             stages: recipe.stages.iter().map(stage).collect::<Result<_>>()?,
+            side: set.settings.map,
             layers: recipe.layers,
             rounds: plan.rounds(),
         })
@@ -228,18 +234,19 @@ impl ViewPasses {
         commands.dispatch("fit", &self.fit, push, once());
         match (&self.map, maps) {
             (MapPasses::Triangles { draw, .. }, _) => {
-                draw.record(commands, "shadow_map", resources, push)?;
+                draw.record(commands, "shadow_map", resources, self.side, push)?;
             }
             (MapPasses::DrawnByHost { projection, .. }, Maps::DrawnByHost(draw)) => {
                 commands.dispatch("projection", projection, push, once());
-                let map = into_map(resources)?;
+                let map = into_map(resources, self.side)?;
                 commands.draw_by_host("shadow_map", &map, || draw(index));
             }
             (MapPasses::Given(import), Maps::Given(list)) => {
                 let views = plan.views().count();
                 let bound = import.with(*list * views + index as usize);
                 let draw = (bound, Draw::Vertices(3));
-                commands.draw("shadow_map", push, &into_map(resources)?, [draw]);
+                let map = into_map(resources, self.side)?;
+                commands.draw("shadow_map", push, &map, [draw]);
             }
             _ => {
                 return Err(crate::Error::Invalid(
@@ -286,7 +293,13 @@ impl ViewPasses {
         let (map, layers) = (resources.image("shadow_map")?, resources.image("layers")?);
         for level in 0..self.layers {
             if let (1.., Some(casters)) = (level, &self.next_layers) {
-                casters.record(commands, "peel", resources, Push { index, level })?;
+                casters.record(
+                    commands,
+                    "peel",
+                    resources,
+                    self.side,
+                    Push { index, level },
+                )?;
             }
             commands.copy_layer("keep_layer", map, layers, level);
         }
@@ -297,7 +310,6 @@ impl ViewPasses {
     pub fn record_stages(
         &self,
         commands: &mut Commands,
-        plan: &Plan,
         resources: &Resources,
         index: u32,
     ) -> Result<()> {
@@ -310,8 +322,7 @@ impl ViewPasses {
                 Groups::Indirect(rounds, offset as u64)
             };
             let groups = |round| match stage.work {
-                Work::Pixels => Groups::Direct(tiles(plan)),
-                Work::Kernels => {
+                Work::Pixels => {
                     Groups::Indirect(fits, in_fit(index, offset_of!(Fit, kernel_groups)))
                 }
                 Work::Packets => {

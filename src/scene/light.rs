@@ -10,6 +10,9 @@ use crate::{Error, Result};
 /// The largest |cos| between the half-axes of a rectangle.
 const PERPENDICULAR_TOLERANCE: f64 = 1e-4;
 
+/// [share of a light's size] Height over its plane up to which a surface is the lamp's own.
+const TOUCH: f64 = 1e-7;
+
 impl AreaLight {
     /// Unit vectors (u, v, normal) with normal = u × v the direction in which the light shines. A
     /// rectangle's u lies along its own; a disc's is arbitrary, but the same in every run. A point
@@ -41,6 +44,13 @@ impl AreaLight {
     /// Whether the light has no extent; its shadow is hard.
     pub fn is_point(&self) -> bool {
         self.half_size() == (0.0, 0.0)
+    }
+
+    /// [scene units] Surfaces no higher over the light's plane touch it, where coordinates are as large as `magnitude`
+    /// \[scene units\]: 1e-7 of its size, or half a unit in the last place of such coordinates.
+    pub fn touch(&self, magnitude: f64) -> f64 {
+        let (u, v) = self.half_size();
+        (TOUCH * 2.0 * u.max(v)).max(0.5 * f64::from(f32::EPSILON) * magnitude)
     }
 
     /// [scene units²]

@@ -57,6 +57,7 @@ impl Settings {
             add("packet", format!("{}x{}", self.packet.0, self.packet.1));
             add("leaf", self.leaf.to_string());
             add("mapping", self.mapping.to_string());
+            add("near-points", self.near_points.to_string());
         }
         if Recipe::new(self).mssm {
             add("mssm-bits", self.mssm_bits.to_string());

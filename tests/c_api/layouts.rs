@@ -39,7 +39,7 @@ fn standalone() -> Vec<Layout> {
         hs_light { r#type size next center u v normal radius color intensity shape reserved }
         hs_settings { r#type size next technique packet_width packet_height leaf mapping split map mssm_bits footprint_pruning
             hierarchical gap_filling layers occluders light_samples pattern blocker_samples filter_samples
-            percentage_closer maps bias counters reserved }
+            percentage_closer maps bias counters near_points }
         hs_shot_counts { r#type size next width height lights reserved }
         hs_renderer_info { r#type size next picture exposure ambient edge_cost visibility_cost reserved }
         hs_statistics { r#type size next device_ms memory_bytes pass_count view_count views_with_receivers

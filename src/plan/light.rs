@@ -1,0 +1,250 @@
+//! What is to be done about a light: which parts of it have views, and what runs in them.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::Plan;
+use super::survey::Survey;
+use super::views::{self, Aspect, Site};
+use crate::scene::AreaLight;
+use crate::shared::{self, FRONT_REACH, SECTOR_STEPS, View};
+use crate::shot::{Settings, Shot, Technique};
+use crate::sub_light::{Part, golden_lattice};
+use crate::technique::Recipe;
+
+/// Tangent up to which the front face of a point's view holds receivers: 76 degrees. Its map is fitted to casters, so that
+/// a wide one costs texels only where there are casters to the side.
+const POINT_REACH: f32 = 4.0;
+
+/// What is to be done about a light.
+#[derive(Debug, Clone)]
+pub struct LightPlan {
+    pub name: String,
+    pub light: shared::Light,
+    pub outcome: Outcome,
+    /// None without views.
+    pub sets: Vec<ViewSet>,
+    /// [sub-light] In how many parts the light is cut, and how many of them points stand for.
+    pub part_count: usize,
+    pub near_count: usize,
+}
+
+/// Views of a light that run the same.
+#[derive(Debug, Clone)]
+pub struct ViewSet {
+    /// As they run in its views.
+    pub settings: Settings,
+    pub recipe: Recipe,
+    /// [sub-light or point] That have a view for each face.
+    pub part_count: usize,
+    pub views: Vec<ViewPlan>,
+}
+
+impl ViewSet {
+    /// [degree] How far from the light's axis the front face holds receivers.
+    pub(super) fn reach_degrees(&self) -> f64 {
+        f64::from(reach(&self.settings)).atan().to_degrees()
+    }
+}
+
+impl LightPlan {
+    pub fn views(&self) -> impl Iterator<Item = &ViewPlan> {
+        self.sets.iter().flat_map(|set| &set.views)
+    }
+
+    /// Whether several views add up.
+    pub fn accumulates(&self) -> bool {
+        self.views().count() > 1
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Nothing visible is lit by it: visibility 0.
+    Dark,
+    /// Nothing can cast a shadow: visibility 1 where it shines.
+    Unshadowed,
+    /// Its views decide.
+    Shadowed,
+}
+
+/// One face of one sub-light.
+#[derive(Debug, Clone)]
+pub struct ViewPlan {
+    pub view: View,
+    pub variant: Variant,
+    /// Sector table of a sub-light that a disc's rim cuts.
+    pub sectors: Option<Arc<[f32]>>,
+    /// What the view was planned from.
+    pub aspect: Aspect,
+}
+
+/// Which pipelines a view needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Variant {
+    /// A disc's rim cuts the sub-light.
+    pub round: bool,
+    /// The map is not parallel to the light.
+    pub oblique: bool,
+    /// The light has more than one view.
+    pub accumulate: bool,
+}
+
+/// A light where it stands.
+pub(super) struct Placed<'a> {
+    pub light: &'a AreaLight,
+    /// [scene units, world] What positions on the device are relative to.
+    pub origin: DVec3,
+    /// [scene units] See [`Shot::touch`].
+    pub touch: f64,
+    /// Linear RGB.
+    pub radiance: [f32; 3],
+}
+
+impl<'a> Placed<'a> {
+    pub fn of_shot(shot: &Shot, light: &'a AreaLight) -> Self {
+        Self {
+            light,
+            origin: shot.origin(),
+            touch: shot.touch(light),
+            radiance: views::radiance(shot, light),
+        }
+    }
+
+    /// `settings`: as they run in the light's views.
+    pub fn site(&self, settings: &Settings, levels: u32) -> Site {
+        Site {
+            origin: self.origin,
+            map: settings.map,
+            bias: settings.bias(),
+            touch: self.touch,
+            levels,
+        }
+    }
+}
+
+impl Plan {
+    /// `parts`: of the light as it is cut by settings as they run for it.
+    pub(super) fn add_light(
+        &mut self,
+        settings: &Settings,
+        placed: &Placed,
+        parts: Vec<Part>,
+        found: &Survey,
+    ) {
+        let outcome = match found {
+            Survey {
+                receivers: false, ..
+            } => Outcome::Dark,
+            Survey { casters: false, .. } => Outcome::Unshadowed,
+            _ => Outcome::Shadowed,
+        };
+        let (part_count, near_count) = (parts.len(), found.near_count());
+        let sampled = sampled(settings.of_light(placed.light), parts, &found.near);
+        let weight_sum = views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts));
+        let view_first = self.views().count() as u32;
+        let sets = match outcome {
+            Outcome::Shadowed => self.view_sets(placed, sampled, found),
+            _ => Vec::new(),
+        };
+        let view_count: usize = sets.iter().map(|set| set.views.len()).sum();
+        let view_range = view_first..view_first + view_count as u32;
+        let light = placed.light;
+        let name = match light.name.as_str() {
+            "" => format!("light {}", self.lights.len()),
+            name => name.to_owned(),
+        };
+        let radiance = placed.radiance;
+        self.lights.push(LightPlan {
+            name,
+            light: views::whole_light(placed.origin, light, radiance, weight_sum, view_range),
+            outcome,
+            sets,
+            part_count,
+            near_count,
+        });
+    }
+
+    fn view_sets(
+        &self,
+        placed: &Placed,
+        sampled: Vec<(Settings, Vec<Part>)>,
+        found: &Survey,
+    ) -> Vec<ViewSet> {
+        let tables = self.views().filter(|view| view.sectors.is_some()).count() as u32;
+        let mut sector_first = tables * (SECTOR_STEPS + 1);
+        let faces_of = |settings: &Settings| found.faces(reach(settings));
+        let counts = sampled.iter();
+        let view_count: usize = counts
+            .map(|(settings, parts)| parts.len() * faces_of(settings).len())
+            .sum();
+        let set = |(settings, parts): (Settings, Vec<Part>)| {
+            let faces = faces_of(&settings);
+            let site = placed.site(&settings, 0);
+            let aspects = parts.iter().flat_map(|part| {
+                faces.iter().map(|&face| Aspect {
+                    part: part.clone(),
+                    face,
+                    reach: if faces.len() > 1 {
+                        reach(&settings)
+                    } else {
+                        f32::MAX
+                    },
+                })
+            });
+            let view = |aspect: Aspect| {
+                let sectors = aspect.sectors();
+                let mut view = aspect.view(&site, placed.light, 0);
+                if let Some(table) = &sectors {
+                    view.sector_first = sector_first;
+                    sector_first += table.len() as u32;
+                }
+                ViewPlan {
+                    view,
+                    variant: Variant {
+                        round: sectors.is_some(),
+                        oblique: aspect.face != 0,
+                        accumulate: view_count > 1,
+                    },
+                    sectors,
+                    aspect,
+                }
+            };
+            ViewSet {
+                views: aspects.map(view).collect(),
+                recipe: Recipe::new(&settings),
+                part_count: parts.len(),
+                settings,
+            }
+        };
+        sampled.into_iter().map(set).collect()
+    }
+}
+
+/// Tangent up to which the front face of a view holds receivers; side faces hold the rest.
+fn reach(settings: &Settings) -> f32 {
+    match settings.technique {
+        Technique::ReferenceMaps => POINT_REACH,
+        _ => FRONT_REACH,
+    }
+}
+
+/// The parts of a light with the settings that run in their views. Where an occluder is nearer to a part than the part is
+/// wide (`near`), its points differ too much in what they see for the middle to stand for them, however it is integrated:
+/// points with hard shadows take its place.
+fn sampled(settings: Settings, parts: Vec<Part>, near: &[bool]) -> Vec<(Settings, Vec<Part>)> {
+    let on_light: Vec<DVec2> = golden_lattice(settings.near_points).collect();
+    let is_near = |index: usize| near.get(index).copied().unwrap_or(false);
+    let (mut whole, mut points) = (Vec::new(), Vec::new());
+    for (index, part) in parts.into_iter().enumerate() {
+        match is_near(index) {
+            true => points.extend(part.points(&on_light)),
+            false => whole.push(part),
+        }
+    }
+    let of_points = settings.of_points();
+    let mut sampled = vec![(settings, whole), (of_points, points)];
+    sampled.retain(|(_, parts)| !parts.is_empty());
+    sampled
+}
