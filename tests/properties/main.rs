@@ -7,6 +7,7 @@ mod closed_form;
 mod support;
 
 mod bias;
+mod closed;
 mod ends;
 mod frames;
 mod generated;
