@@ -332,7 +332,7 @@ fn a_shot_file_takes_what_it_lacks_from_its_scene() {
     };
     let shot = Shot::load(&folder.path().join("shot.json"), &overrides).unwrap();
     assert_eq!((shot.width, shot.lights.len()), (768, 1));
-    assert!(Shot::load(Path::new("/nowhere/shot.json"), &overrides).is_err());
+    assert!(Shot::load(&folder.path().join("absent.json"), &overrides).is_err());
 }
 
 #[test]

@@ -30,6 +30,18 @@ enum What {
 }
 
 /// # Errors
+/// What the command line of the study gets wrong.
+pub fn check(args: &Args) -> Result<()> {
+    match &args.what {
+        What::Pareto(args) => pareto::check(args),
+        What::Merge(_) => Ok(()),
+        What::Tune(args) => tune::check(args),
+        What::Stability(args) => stability::check(args),
+        What::Figure(args) => figure::check(args),
+    }
+}
+
+/// # Errors
 /// What the study fails with.
 pub fn run(args: &Args) -> Result<()> {
     match &args.what {

@@ -127,16 +127,6 @@ fn several_lights_have_a_channel_each() {
 }
 
 #[test]
-fn unknown_keys_are_noted_and_ignored() {
-    let (folder, mut shot) = (Folder::new(), plate());
-    shot["weather"] = json!("fine");
-    folder.write_shot(&shot);
-    let run = folder.run(&["plan", "shot.json"]);
-    assert_eq!(run.code, Some(0), "{}", run.err);
-    assert_eq!(run.err, "note: The key \"weather\" is ignored.\n");
-}
-
-#[test]
 fn a_plan_names_passes_memory_and_omissions() {
     let folder = Folder::new();
     folder.write_shot(&plate());

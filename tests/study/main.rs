@@ -1,5 +1,8 @@
 //! Studies: what they measure, that they go on where they were, that parts make a whole, and the page they end in.
 
+#[path = "../command_line/program.rs"]
+#[allow(dead_code)] // The command line's own tests use the rest.
+mod command;
 mod figure;
 mod made_up;
 mod page;

@@ -9,6 +9,8 @@ use std::time::SystemTime;
 use halfshade::shot::Technique;
 use halfshade::study::usual_settings;
 
+use super::command::{at_home, program};
+
 const PROGRAM: &str = env!("CARGO_BIN_EXE_halfshade");
 
 fn plate() -> String {
@@ -26,7 +28,7 @@ fn small(folder: &Path) -> Vec<String> {
 }
 
 fn study(arguments: &[&str], more: &[String]) -> Output {
-    Command::new(PROGRAM)
+    program()
         .arg("study")
         .args(arguments)
         .args(more)
@@ -96,7 +98,7 @@ fn it_goes_on_where_it_was_and_parts_make_the_whole() {
 #[test]
 fn the_batch_script_runs_one_part() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = Command::new("bash")
+    let output = at_home(&mut Command::new("bash"))
         .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tools/study.sbatch"))
         .arg(folder.path().join("study"))
         .arg(plate())
@@ -125,11 +127,7 @@ fn tuning_prints_a_command_or_says_how_near_it_comes() {
         .find_map(|line| line.strip_prefix("use: halfshade "));
     let words: Vec<&str> = command.expect("a command").split(' ').collect();
     let picture = folder.path().join("picture.png");
-    let rendered = Command::new(PROGRAM)
-        .args(words)
-        .arg("-o")
-        .arg(&picture)
-        .output();
+    let rendered = program().args(words).arg("-o").arg(&picture).output();
     let rendered = rendered.expect("the program runs");
     assert!(rendered.status.success(), "{}", said(&rendered));
     assert!(picture.exists());
@@ -182,7 +180,7 @@ fn the_program_takes_the_flags_of_all_settings() {
         .iter()
         .flat_map(|&technique| usual_settings(technique))
     {
-        let output = Command::new(PROGRAM)
+        let output = program()
             .args(["plan", &plate()])
             .args(settings.flags())
             .output()
