@@ -30,10 +30,10 @@ pub(super) fn place_of(path: &Path) -> io::Result<Place> {
     }
 }
 
-/// Where a file will stand that is not there yet.
+/// Where a file will stand that the system has not found.
 fn absent(path: &Path) -> io::Result<PathBuf> {
     let mut place = path.to_path_buf();
-    // The links end, for the system has followed them to something that is missing.
+    // The links end: the system has followed them to what is missing.
     while let Ok(next) = fs::read_link(&place) {
         place = folder_of(&place).join(next);
     }
@@ -77,14 +77,17 @@ fn identity(path: &Path) -> Option<Identity> {
     match fs::metadata(path) {
         Ok(found) if found.file_type().is_char_device() => Some(Identity::Device(found.rdev())),
         Ok(found) => Some(Identity::Inode(found.dev(), found.ino())),
-        Err(_) => absent(path).ok().map(Identity::Path),
+        Err(error) if error.kind() == ErrorKind::NotFound => absent(path).ok().map(Identity::Path),
+        Err(_) => None,
     }
 }
 
 #[cfg(not(unix))]
 fn identity(path: &Path) -> Option<Identity> {
-    let real = fs::canonicalize(path).or_else(|_| absent(path));
-    real.ok().map(Identity::Path)
+    match place_of(path).ok()? {
+        Place::File(real) => Some(Identity::Path(real)),
+        Place::Stream => Some(Identity::Path(path.into())),
+    }
 }
 
 /// Whether two paths lead to the same file, be it by symbolic links, hard links or another spelling, and be the file
@@ -132,6 +135,8 @@ mod tests {
             assert!(is_same_file(&at("sub/new"), &at(same)), "{same}");
         }
         assert!(!is_same_file(&at("sub/new"), &at("new")));
+        symlink("round", at("round")).unwrap();
+        assert!(!is_same_file(&at("round"), &at("round")));
         let null = Path::new("/dev/null");
         assert!(!is_same_file(null, null));
     }

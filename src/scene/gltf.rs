@@ -129,12 +129,6 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
         scene.lights.extend(light);
         scene.cameras.extend(emitters.camera(place, &mut notes)?);
     }
-    if emitters.radius_is_idle() {
-        light_notes.add(
-            "ignored, for the scene has no point or spot light",
-            "--radius",
-        );
-    }
     if !options.own_lights {
         notes.append(light_notes);
     }
@@ -147,6 +141,10 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     }
     scene.files = document.files();
     scene.notes = notes.into_sentences();
+    if emitters.radius_is_idle() && !options.own_lights {
+        let note = "--radius is ignored, for the scene has no point or spot light.";
+        scene.notes.push(note.into());
+    }
     Ok(scene)
 }
 

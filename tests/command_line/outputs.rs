@@ -99,7 +99,8 @@ fn what_is_read_is_not_written() {
     }
     // The scene alone as the shot; its neighbour as the output.
     let args = ["render", "scene/plate.gltf", "--stats", "shot.json"];
-    folder.does(&[&args[..], &QUICK].concat());
+    let run = folder.run(&[&args[..], &QUICK].concat());
+    assert_eq!(run.code, Some(0), "{}", run.err);
 }
 
 #[test]
@@ -110,14 +111,14 @@ fn what_is_compared_is_not_written() {
     for name in ["a.png", "b.png"] {
         write_png(&folder.path(name), 2, 2, &[7; 12]).expect("written");
     }
-    symlink("b.png", folder.path("link")).expect("a link");
+    symlink("b.png", folder.path("link.png")).expect("a link");
     fs::hard_link(folder.path("a.exr"), folder.path("hard")).expect("a link");
     for (image, reference, output) in [
         ("a.png", "b.png", "a.png"),
         ("a.png", "b.png", "b.png"),
         ("a.png", "b.png", "./b.png"),
-        ("a.png", "b.png", "link"),
-        ("a.png", "link", "b.png"),
+        ("a.png", "b.png", "link.png"),
+        ("a.png", "link.png", "b.png"),
         ("a.exr", "a.exr", "hard"),
     ] {
         let args = ["compare", image, reference, "--heatmap", output];

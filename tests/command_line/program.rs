@@ -46,6 +46,8 @@ pub fn at_home(command: &mut Command) -> &mut Command {
     ] {
         command.env(variable, home.join(folder));
     }
+    // Mesa makes no folders above its own.
+    std::fs::create_dir_all(home.join("cache")).expect("a folder");
     command
 }
 

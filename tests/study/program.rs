@@ -142,6 +142,15 @@ fn tuning_prints_a_command_or_says_how_near_it_comes() {
         "{}",
         said(&never)
     );
+    for said_before in [
+        "the truth's own noise with 16 rays a pixel",
+        "it is traced with 65536",
+        "with 65536 rays a pixel",
+        "that error cannot be told",
+    ] {
+        assert!(said(&never).contains(said_before), "{}", said(&never));
+    }
+    assert!(!said(&found).contains("noise"), "{}", said(&found));
     let fast = study(&["tune", &file, "--max-ms", "1e5"], &small(folder.path()));
     assert!(fast.status.success(), "{}", said(&fast));
 }
@@ -151,25 +160,35 @@ fn wrong_use_is_refused_in_a_sentence() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("study").display().to_string();
     let file = plate();
-    for (arguments, sentence) in [
-        (vec!["pareto", &file, "-o", &out, "--shard", "3/3"], "I/N"),
+    for (arguments, sentence, code) in [
+        (
+            vec!["pareto", &file, "-o", &out, "--shard", "3/3"],
+            "I/N",
+            2,
+        ),
         (
             vec!["pareto", &file, "-o", &out, "--techniques", "raytracing"],
             "choose one of",
+            2,
         ),
         (
             vec!["pareto", &file, "-o", &out, "--maps", "5"],
             "16 to 8192",
+            2,
         ),
-        (vec!["pareto", "nothing.json", "-o", &out], "nothing.json"),
-        (vec!["pareto", &file, "-o", &file], "plate.json"),
-        (vec!["merge", &out, "-o", &out], "no run is finished"),
-        (vec!["tune", &file], "--max-error"),
-        (vec!["tune", &file, "--max-ms", "-1"], "--max-ms"),
+        (
+            vec!["pareto", "nothing.json", "-o", &out],
+            "nothing.json",
+            1,
+        ),
+        (vec!["pareto", &file, "-o", &file], "plate.json", 1),
+        (vec!["merge", &out, "-o", &out], "no run is finished", 1),
+        (vec!["tune", &file], "--max-error", 2),
+        (vec!["tune", &file, "--max-ms", "-1"], "--max-ms", 2),
     ] {
         let output = study(&arguments, &[]);
         let text = said(&output);
-        assert!(!output.status.success(), "{arguments:?}");
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert!(text.contains(sentence), "{arguments:?}: {text}");
     }
 }
