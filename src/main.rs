@@ -56,9 +56,9 @@ impl Command {
         match self {
             Self::Render(args) => cli::render::run(args, given),
             Self::Plan(args) => cli::plan::run(args, given),
-            Self::Reference(args) => cli::reference::run(args),
+            Self::Reference(args) => cli::reference::run(args, given),
             Self::Compare(args) => cli::compare::run(args),
-            Self::Study(args) => cli::study::run(args),
+            Self::Study(args) => cli::study::run(args, given),
             Self::Calibrate(args) => cli::calibrate::run(args),
             Self::Devices(args) => cli::devices::run(args),
         }

@@ -6,9 +6,11 @@ use std::time::Instant;
 use halfshade::cpu::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
 use halfshade::image::{check_writable, write_exr};
 use halfshade::number::sum;
+use halfshade::scene::AreaLight;
 use halfshade::shot::Shot;
 use halfshade::{Error, Result};
 
+use super::given::Given;
 use super::load_args::LoadArgs;
 use super::outputs::{self, Format, Output};
 use super::{SAMPLES, on_interrupt, print, print_notes, progress};
@@ -56,10 +58,18 @@ impl Args {
 /// # Errors
 /// When the shot cannot be read or traced, when the image cannot be written, or on Ctrl-C; then no
 /// file is left.
-pub fn run(args: &Args) -> Result<()> {
+pub fn run(args: &Args, given: &Given) -> Result<()> {
     check_writable(&args.output)?;
     let overrides = args.load.overrides();
-    let shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
+    let mut shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
+    if shot.lights.get(args.light).is_some_and(AreaLight::is_point) {
+        let idle = given
+            .flags()
+            .filter(|flag| ["samples", "seed"].contains(flag));
+        shot.notes.extend(idle.map(|flag| {
+            format!("--{flag} is ignored, for one ray decides about a light without extent.")
+        }));
+    }
     print_notes(&shot);
     outputs::check_read([&*args.output], &shot.scene.files)?;
     let cancel = on_interrupt()?;

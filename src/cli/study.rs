@@ -9,6 +9,8 @@ mod tune;
 
 use halfshade::Result;
 
+use super::given::Given;
+
 /// Measures error against run time on your shots and device.
 ///
 /// `pareto` sweeps techniques and settings and reports all of them; `merge` joins parts of a sweep that ran on
@@ -43,9 +45,9 @@ pub fn check(args: &Args) -> Result<()> {
 
 /// # Errors
 /// What the study fails with.
-pub fn run(args: &Args) -> Result<()> {
+pub fn run(args: &Args, given: &Given) -> Result<()> {
     match &args.what {
-        What::Pareto(args) => pareto::run(args),
+        What::Pareto(args) => pareto::run(args, given),
         What::Merge(args) => merge::run(args),
         What::Tune(args) => tune::run(args),
         What::Stability(args) => stability::run(args),

@@ -141,6 +141,13 @@ fn flags_that_lights_without_extent_do_not_read() {
     );
     let hard = ["--technique", "hard", "--percentage-closer", "--bias", "1"];
     assert!(ignored(&folder, "shot.json", &hard).is_empty());
+    let trace = ["reference", "shot.json", "-o", "r.exr", "--light", "0"];
+    folder.does(&trace);
+    let told = notes(
+        &folder,
+        &[&trace[..], &["--samples", "16", "--seed", "1"]].concat(),
+    );
+    assert_eq!(told.len(), 2, "{told:?}");
 }
 
 /// The plate's scene with a point light, in the folder, without its area light if so wished.
@@ -268,6 +275,11 @@ fn sweeps_name_what_none_of_their_techniques_reads() {
             "--packets is ignored, for none of the techniques reads it.",
             "--reference-maps is ignored, for none of the techniques reads it."
         ]
+    );
+    let report = [&sweep[..], &["--report-only", "--repeat", "2"]].concat();
+    assert_eq!(
+        notes(&folder, &report),
+        ["--repeat is ignored, for --report-only measures nothing."]
     );
 }
 

@@ -232,6 +232,7 @@ fn wrong_usage_of_studies() {
             "leave out the shots",
         ),
         (&["study", "figure", "--quick"], &[], "required"),
+        (&["study", "figure", "--repeat", "2"], &[], "required"),
         (&["study", "stability"], &["--case", "no such"], "no case"),
         (&["study", "stability"], &["-o", "a.json"], "another format"),
         (&["study", "merge", "part"], &[], "required"),

@@ -34,10 +34,10 @@ pub struct Args {
     #[arg(long, requires = "name")]
     paper: bool,
     /// Timed frames of each candidate, 1 to 10000, after one to warm up [default: the figure's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(REPEAT))]
+    #[arg(long, value_name = "N", requires = "name", value_parser = clap::value_parser!(u32).range(REPEAT))]
     repeat: Option<u32>,
     /// Folder of traced truths, by what they show [default: in the user's cache folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", requires = "name")]
     truths: Option<PathBuf>,
     #[command(flatten)]
     device: DeviceArgs,

@@ -10,8 +10,9 @@ use halfshade::study::{Bench, Folder, Machine, Shard, Subject, front, key};
 use halfshade::{Error, Result};
 use indicatif::ProgressBar;
 
+use super::super::given::Given;
 use super::super::shot_args::DeviceArgs;
-use super::super::{outputs, print, progress};
+use super::super::{outputs, print, print_note, progress};
 use super::sweep_args::{ProtocolArgs, Setting, SweepArgs};
 
 /// Measures techniques and settings on shots: error against ray-traced truth, GPU time, memory.
@@ -55,10 +56,19 @@ pub fn check(args: &Args) -> Result<()> {
 
 /// # Errors
 /// A shot cannot be read, the folder cannot be written, the device is lost, or Ctrl-C; finished runs stay.
-pub fn run(args: &Args) -> Result<()> {
+pub fn run(args: &Args, given: &Given) -> Result<()> {
     let folder = Folder::open(&args.output)?;
     check_apart(&folder, &args.shots)?;
-    if !args.report_only {
+    if args.report_only {
+        let idle = given
+            .flags()
+            .filter(|flag| !["output", "report-only"].contains(flag));
+        idle.for_each(|flag| {
+            print_note(&format!(
+                "--{flag} is ignored, for --report-only measures nothing."
+            ));
+        });
+    } else {
         args.device
             .with_device(|gpu| measure(args, gpu, &folder))
             .map_err(|error| match error {
