@@ -381,39 +381,3 @@ fn names_are_the_same_everywhere() {
     check(Technique::ALL);
     assert_eq!(Technique::PacketContour.to_string(), "packet-contour");
 }
-
-#[test]
-fn the_files_that_a_shot_is_read_from_are_known() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut gltf = Gltf::triangle();
-    gltf.json["buffers"][0]["uri"] = "own.bin".into();
-    gltf.push(
-        "buffers",
-        json!({"uri": "data:;base64,AAAA", "byteLength": 3}),
-    );
-    // What nothing reads may not be there.
-    gltf.push("images", json!({"uri": "bumps%20.png"}));
-    gltf.push("images", json!({"uri": "https://example.org/far.png"}));
-    std::fs::create_dir(folder.path().join("sub")).unwrap();
-    write(&folder, "sub/scene.gltf", gltf.json.to_string().as_bytes());
-    write(&folder, "sub/own.bin", &gltf.bytes);
-    let mut shot = example();
-    shot["scene"] = json!("sub/scene.gltf");
-    shot["lights"][0]["texture"] = json!("glow.png");
-    write(&folder, "shot.json", shot.to_string().as_bytes());
-    let shot = Shot::load(&folder.path().join("shot.json"), &Overrides::default()).unwrap();
-    let mut files = shot.scene.files.clone();
-    files.sort();
-    let expected = [
-        "glow.png",
-        "shot.json",
-        "sub/bumps .png",
-        "sub/own.bin",
-        "sub/scene.gltf",
-    ];
-    assert_eq!(files, expected.map(|name| folder.path().join(name)));
-    // What was in memory was read from nowhere.
-    let bytes = Gltf::triangle().to_glb();
-    let scene = halfshade::scene::gltf::parse(Path::new("a.glb"), &bytes, &Default::default());
-    assert!(scene.unwrap().files.is_empty());
-}

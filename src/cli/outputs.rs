@@ -65,7 +65,7 @@ impl Output<'_> {
         let extension = self.path.extension().unwrap_or_default();
         let is = |known: &&str| extension.eq_ignore_ascii_case(known);
         let own = self.format.extensions();
-        if own.iter().any(|known| is(known)) || !KNOWN.iter().any(|known| is(known)) {
+        if own.iter().any(is) || !KNOWN.iter().any(is) {
             return Ok(());
         }
         Err(Error::Invalid(format!(

@@ -115,7 +115,7 @@ fn flags_that_a_technique_does_not_read() {
 #[test]
 fn flags_that_lights_without_extent_do_not_read() {
     let (folder, mut shot) = (Folder::new(), plate());
-    let point = json!({"type": "disc", "center": [0, 3, 0], "radius": 0});
+    let point = json!({"type": "disc", "center": [0, 3, 0], "normal": [0, -1, 0], "radius": 0});
     let flags = [
         "--technique",
         "pcss",
