@@ -2,8 +2,6 @@
 
 mod support;
 
-use std::path::Path;
-
 use glam::DVec3;
 use halfshade::scene::{AreaLight, LightShape};
 use halfshade::shot::{Leaf, Mapping, Overrides, Settings, Shot, Technique};
