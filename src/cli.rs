@@ -1,10 +1,13 @@
-//! The subcommands: each has its arguments and a `run` that returns an error or prints its result.
+//! The subcommands: each has its arguments, a `check` of what the command line alone gets wrong, where it can get
+//! anything wrong, and a `run` that returns an error or prints its result.
 
 use std::io::{self, Write};
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use halfshade::cpu::reference as ray_tracer;
 use halfshade::shot::{MAX_SIZE, Shot};
 use halfshade::{Error, Result};
 
@@ -12,7 +15,9 @@ pub mod calibrate;
 pub mod calibration;
 pub mod compare;
 pub mod devices;
+pub mod given;
 mod load_args;
+mod outputs;
 pub mod plan;
 mod progress;
 pub mod reference;
@@ -21,6 +26,13 @@ pub mod shot_args;
 mod stats;
 pub mod study;
 mod time_limit;
+
+/// Rays per pixel, as a parser of flags wants its ranges.
+const SAMPLES: RangeInclusive<i64> =
+    *ray_tracer::SAMPLES.start() as i64..=*ray_tracer::SAMPLES.end() as i64;
+
+/// Timed frames that can be asked for.
+const REPEAT: RangeInclusive<i64> = 1..=10000;
 
 /// The user's folders for caches and data. None: there is no home folder.
 pub fn project_folders() -> Option<directories::ProjectDirs> {
@@ -56,21 +68,32 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
-/// What was ignored or changed when the shot was read, a line each on stderr.
-pub fn print_notes(shot: &Shot) {
-    for note in shot.scene.notes.iter().chain(&shot.notes) {
-        // Nobody is left to tell when stderr is closed.
-        let _ = writeln!(io::stderr(), "note: {note}");
-    }
+/// What was ignored or changed when the shot was read, or is said about its flags, a sentence each.
+pub fn notes(shot: &Shot) -> impl Iterator<Item = &String> {
+    shot.scene.notes.iter().chain(&shot.notes)
 }
 
-/// An error as one line, whatever a driver or a file name has put into it.
-pub fn print_error(error: &Error) {
-    let text = error.to_string();
-    let words: Vec<&str> = text.split(char::is_control).map(str::trim).collect();
-    let text = words.join(" ");
+/// The notes of a shot, a line each on stderr.
+pub fn print_notes(shot: &Shot) {
+    notes(shot).for_each(|note| print_note(note));
+}
+
+/// A line on stderr.
+pub fn print_note(note: &str) {
     // Nobody is left to tell when stderr is closed.
-    let _ = writeln!(io::stderr(), "halfshade: {}", text.trim_end());
+    let _ = writeln!(io::stderr(), "note: {}", one_line(note));
+}
+
+/// An error as one line.
+pub fn print_error(error: &Error) {
+    // Nobody is left to tell when stderr is closed.
+    let _ = writeln!(io::stderr(), "halfshade: {}", one_line(&error.to_string()));
+}
+
+/// A sentence without line breaks, whatever a driver or a file name has put into it.
+pub fn one_line(text: &str) -> String {
+    let words: Vec<&str> = text.split(char::is_control).map(str::trim).collect();
+    words.join(" ").trim_end().to_owned()
 }
 
 /// The value of `--size`: `WxH` in pixels, each from 1 to 32768.

@@ -5,6 +5,7 @@ mod picture;
 use serde::{Deserialize, Serialize};
 
 use crate::image::Plane;
+use crate::number::sum;
 use crate::{Error, Result};
 
 pub use picture::{PictureMetrics, compare_pictures};
@@ -138,11 +139,11 @@ impl Errors {
     }
 
     fn mean_absolute(&self) -> f64 {
-        self.per_pixel(self.absolute.iter().sum())
+        self.per_pixel(sum(self.absolute.iter().copied()))
     }
 
     fn root_mean_square(&self) -> f64 {
-        self.per_pixel(self.absolute.iter().map(|error| error * error).sum())
+        self.per_pixel(sum(self.absolute.iter().map(|error| error * error)))
             .sqrt()
     }
 
@@ -308,6 +309,8 @@ mod tests {
             (m.shadow_pixels, m.mae_shadow, m.rmse_shadow, m.p99),
             (0, 0.0, 0.0, 0.0)
         );
+        let text = serde_json::to_string(&m).unwrap();
+        assert!(!text.contains("-0.0"), "{text}");
         assert_eq!(m.mae, 0.25);
     }
 

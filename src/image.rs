@@ -5,12 +5,16 @@ mod atomic;
 #[cfg(feature = "cli")]
 mod exr_file;
 #[cfg(feature = "cli")]
+mod place;
+#[cfg(feature = "cli")]
 mod png_file;
 
 #[cfg(feature = "cli")]
 pub use atomic::{check_writable, write_atomically};
 #[cfg(feature = "cli")]
 pub use exr_file::{read_exr, write_exr};
+#[cfg(feature = "cli")]
+pub use place::is_same_file;
 #[cfg(feature = "cli")]
 pub use png_file::{RgbImage, read_png, write_png};
 

@@ -11,6 +11,7 @@ pub mod error;
 pub mod gpu;
 #[cfg(feature = "reference")]
 pub mod image;
+pub mod number;
 pub mod plan;
 pub mod render;
 pub mod scene;

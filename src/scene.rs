@@ -13,6 +13,8 @@ mod shape;
 mod tree;
 mod triangles;
 
+use std::path::PathBuf;
+
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 pub(crate) use geometry::MAX_COORDINATE;
@@ -43,6 +45,8 @@ pub struct Scene {
     pub lights: Vec<AreaLight>,
     /// In the order of the file's node tree.
     pub cameras: Vec<Camera>,
+    /// The files that a shot or a scene is read from: the shot file, the glTF, and the buffers and images that it names.
+    pub files: Vec<PathBuf>,
     /// What the file asked for and the engine leaves out or treats otherwise, a sentence each.
     pub notes: Vec<String>,
 }

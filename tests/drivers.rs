@@ -4,8 +4,6 @@
 #[allow(dead_code)] // The command line's own tests use the rest.
 mod program;
 
-use std::process::Command;
-
 use halfshade::image::{MAX_SAMPLES, read_exr};
 use program::{Folder, scenes};
 
@@ -20,7 +18,7 @@ const MEAN: f32 = 0.002;
 /// The visibility of a scene of the repository, 32×32 pixels, in an environment of its own.
 fn visibility(folder: &Folder, scene: &str, environment: &[(&str, Option<&str>)]) -> Vec<f32> {
     let file = folder.path("v.exr");
-    let mut program = Command::new(env!("CARGO_BIN_EXE_halfshade"));
+    let mut program = folder.program();
     program
         .arg("render")
         .arg(scenes().join(format!("{scene}.json")));
@@ -33,7 +31,7 @@ fn visibility(folder: &Folder, scene: &str, environment: &[(&str, Option<&str>)]
         "1",
         "--visibility",
     ]);
-    program.arg(&file).env("XDG_DATA_HOME", "/nonexistent");
+    program.arg(&file);
     for (name, value) in environment {
         match value {
             Some(value) => program.env(name, value),

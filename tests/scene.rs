@@ -2,9 +2,12 @@
 
 mod support;
 
+use std::path::Path;
+
 use glam::{DVec3, Vec2};
 use halfshade::scene::LightShape;
 use halfshade::scene::gltf::{LoadOptions, parse};
+use halfshade::shot::{Overrides, Shot};
 use serde_json::json;
 use support::*;
 
@@ -330,4 +333,43 @@ fn punctual_lights_need_a_radius() {
     };
     assert_eq!(shapes, [disc(DVec3::NEG_Y), disc(DVec3::NEG_Z)]);
     assert_eq!(scene.lights[0].intensity, None);
+}
+
+#[test]
+fn the_files_that_a_shot_is_read_from_are_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut gltf = Gltf::triangle();
+    gltf.json["buffers"][0]["uri"] = "own.bin".into();
+    gltf.push(
+        "buffers",
+        json!({"uri": "data:;base64,AAAA", "byteLength": 3}),
+    );
+    // What nothing reads may not be there.
+    gltf.push("images", json!({"uri": "bumps%20.png"}));
+    gltf.push("images", json!({"uri": "https://example.org/far.png"}));
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    write("sub/scene.gltf", gltf.json.to_string().as_bytes());
+    write("sub/own.bin", &gltf.bytes);
+    let shot = json!({
+        "scene": "sub/scene.gltf",
+        "camera": {"eye": [0, 1, 5], "target": [0, 0, 0], "vfov_deg": 62},
+        "lights": [{"type": "disc", "center": [0, 3, 0], "normal": [0, -1, 0], "radius": 1, "texture": "glow.png"}],
+    });
+    write("shot.json", shot.to_string().as_bytes());
+    let shot = Shot::load(&folder.path().join("shot.json"), &Overrides::default()).unwrap();
+    let mut files = shot.scene.files.clone();
+    files.sort();
+    let expected = [
+        "glow.png",
+        "shot.json",
+        "sub/bumps .png",
+        "sub/own.bin",
+        "sub/scene.gltf",
+    ];
+    assert_eq!(files, expected.map(|name| folder.path().join(name)));
+    // What was in memory was read from nowhere.
+    let bytes = Gltf::triangle().to_glb();
+    let scene = parse(Path::new("a.glb"), &bytes, &Default::default());
+    assert!(scene.unwrap().files.is_empty());
 }

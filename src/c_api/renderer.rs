@@ -179,7 +179,7 @@ pub unsafe extern "C" fn hs_renderer_statistics(
             r#type: target.r#type,
             size: target.size,
             next: target.next,
-            device_ms: frame.timings.passes.iter().map(|(_, ms)| ms).sum(),
+            device_ms: frame.timings.ms(|_| true),
             memory_bytes: frame.plan.memory_bytes(),
             pass_count: frame.plan.passes.len() as u32,
             view_count: frame.plan.views().count() as u32,
@@ -223,10 +223,7 @@ pub unsafe extern "C" fn hs_renderer_pass(
         write_text(&mut target.name, name);
         target.count = times;
         target.reserved = 0;
-        let timed = frame.timings.passes.iter();
-        target.device_ms = (timed.filter(|(known, _)| known == name))
-            .map(|(_, ms)| ms)
-            .sum();
+        target.device_ms = frame.timings.ms(|known| known == name);
         Ok(())
     })
 }

@@ -18,7 +18,7 @@ use self::bench::Bench;
 use self::table::{rows, written};
 use super::calibration::{Calibration, Row};
 use super::shot_args::DeviceArgs;
-use super::{on_interrupt, print};
+use super::{on_interrupt, outputs, print};
 
 /// Tunes packet, mapping, leaf rule and cost model for this device, and stores them for `render`.
 ///
@@ -96,6 +96,8 @@ pub fn run(args: &Args) -> Result<()> {
 fn calibrate(args: &Args, gpu: &Arc<Gpu>, interrupted: &AtomicBool) -> Result<()> {
     let budget = Duration::from_secs(args.seconds.unwrap_or(if args.quick { 8 } else { 300 }));
     let mut bench = Bench::new(gpu, &args.shots, args.quick, budget, interrupted)?;
+    let stored = Calibration::file(&gpu.info).filter(|_| !args.dry_run);
+    outputs::check_read(stored.as_deref(), &bench.files())?;
     let mut measured = Vec::new();
     let chosen = tune(&mut bench, args.quick, &mut measured)?;
     let what = bench.describe();

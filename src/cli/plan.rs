@@ -4,6 +4,8 @@ use halfshade::Result;
 use halfshade::plan::{Outputs, plan};
 
 use super::calibration::Calibration;
+use super::given::Given;
+use super::print_notes;
 use super::shot_args::{DeviceArgs, ShotArgs};
 
 /// Prints the passes that a shot needs, with sizes and memory, and what is left out and why.
@@ -21,10 +23,17 @@ pub struct Args {
 }
 
 /// # Errors
+/// A flag's value is out of its range.
+pub fn check(args: &Args) -> Result<()> {
+    args.shot.check()
+}
+
+/// # Errors
 /// When the shot can't be read or exceeds the device's limits.
-pub fn run(args: &Args) -> Result<()> {
+pub fn run(args: &Args, given: &Given) -> Result<()> {
     args.device.with_device(|gpu| {
-        let shot = args.shot.load(&Calibration::of(&gpu.info))?;
+        let shot = args.shot.load(&Calibration::of(&gpu.info), given)?;
+        print_notes(&shot);
         let outputs = Outputs {
             picture: !args.visibility_only,
         };

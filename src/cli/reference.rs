@@ -5,12 +5,15 @@ use std::time::Instant;
 
 use halfshade::cpu::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
 use halfshade::image::{check_writable, write_exr};
+use halfshade::number::sum;
+use halfshade::scene::AreaLight;
 use halfshade::shot::Shot;
-
 use halfshade::{Error, Result};
 
+use super::given::Given;
 use super::load_args::LoadArgs;
-use super::{on_interrupt, print, print_notes, progress};
+use super::outputs::{self, Format, Output};
+use super::{SAMPLES, on_interrupt, print, print_notes, progress};
 
 /// Traces the true visibility of a light with rays, on the CPU.
 ///
@@ -24,7 +27,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
     /// Shadow rays per pixel, 16 to 65536, rounded up to a multiple of 8
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=65536))]
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(SAMPLES))]
     samples: u32,
     /// Another seed gives independent noise, the same seed the same image
     #[arg(long, value_name = "SEED", default_value_t = 0)]
@@ -37,13 +40,38 @@ pub struct Args {
 }
 
 /// # Errors
+/// The image is not to be written where it is said.
+pub fn check(args: &Args) -> Result<()> {
+    outputs::check(&[args.written()], &[&args.shot])
+}
+
+impl Args {
+    fn written(&self) -> Output<'_> {
+        Output {
+            flag: "-o",
+            path: &self.output,
+            format: Format::Exr,
+        }
+    }
+}
+
+/// # Errors
 /// When the shot cannot be read or traced, when the image cannot be written, or on Ctrl-C; then no
 /// file is left.
-pub fn run(args: &Args) -> Result<()> {
+pub fn run(args: &Args, given: &Given) -> Result<()> {
     check_writable(&args.output)?;
     let overrides = args.load.overrides();
-    let shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
+    let mut shot = progress::spin("loading", || Shot::load(&args.shot, &overrides))?;
+    if shot.lights.get(args.light).is_some_and(AreaLight::is_point) {
+        let idle = given
+            .flags()
+            .filter(|flag| ["samples", "seed"].contains(flag));
+        shot.notes.extend(idle.map(|flag| {
+            format!("--{flag} is ignored, for one ray decides about a light without extent.")
+        }));
+    }
     print_notes(&shot);
+    outputs::check_read([&*args.output], &shot.scene.files)?;
     let cancel = on_interrupt()?;
     let start = Instant::now();
     let options = ReferenceOptions {
@@ -75,7 +103,7 @@ fn summary(args: &Args, image: &ReferenceImage, seconds: f64) -> String {
         .filter(|error| !error.is_nan())
         .map(|&error| f64::from(error))
         .collect();
-    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    let squares = sum(errors.iter().map(|error| error * error));
     let root_mean_square = (squares / errors.len().max(1) as f64).sqrt();
     let largest = errors.iter().copied().fold(0.0, f64::max);
     let samples = args.samples.next_multiple_of(BATCHES);

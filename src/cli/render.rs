@@ -1,6 +1,6 @@
 //! `halfshade render`: the main job.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,10 +13,12 @@ use halfshade::shot::Shot;
 use halfshade::{Error, Result};
 
 use super::calibration::Calibration;
-use super::progress;
+use super::given::Given;
+use super::outputs::{self, Format, Output};
 use super::shot_args::{DeviceArgs, ShotArgs};
 use super::stats::Stats;
 use super::time_limit::{TimeLimit, parse_seconds};
+use super::{REPEAT, print_notes, progress};
 
 /// Renders a shot: a shaded picture, the visibility of each light, and what it cost.
 ///
@@ -41,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
     /// Timed frames, 1 to 10000, after one to warm up; each draws its shadow maps anew
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(REPEAT))]
     repeat: u32,
     /// Brightness of the picture in stops: each doubles it
     #[arg(
@@ -68,45 +70,77 @@ struct Products {
 }
 
 /// # Errors
-/// When the shot can't be read or rendered or a file can't be written; then no unfinished file is left.
-pub fn run(args: &Args) -> Result<()> {
-    check_files(args)?;
-    if !args.exposure.is_finite() || !args.ambient.is_finite() || args.ambient < 0.0 {
+/// A flag's value is out of its range, or nothing is to be written, or not where it is said.
+pub fn check(args: &Args) -> Result<()> {
+    args.shot.check()?;
+    if !args.exposure.exp2().is_finite() || !args.ambient.is_finite() || args.ambient < 0.0 {
         return Err(Error::Invalid(
-            "--exposure and --ambient must be finite, --ambient not negative".into(),
+            "--exposure and --ambient must be finite, --exposure below 128, --ambient not negative"
+                .into(),
         ));
     }
+    let outputs = args.outputs();
+    if outputs.is_empty() {
+        return Err(Error::Invalid(
+            "nothing to write: give -o, --visibility or --stats".into(),
+        ));
+    }
+    outputs::check(&outputs, &[&args.shot.shot])
+}
+
+/// # Errors
+/// When the shot can't be read or rendered or a file can't be written; then no unfinished file is left.
+pub fn run(args: &Args, given: &Given) -> Result<()> {
+    let outputs = args.outputs();
+    outputs
+        .iter()
+        .try_for_each(|output| check_writable(output.path))?;
     let limit = args.max_seconds.map(TimeLimit::start);
-    let products = args.device.with_device(|gpu| render(args, gpu))?;
+    let products = args.device.with_device(|gpu| render(args, given, gpu))?;
     drop(limit);
     products.write(args)?;
     super::print(&format!("{}\n", products.stats.summary()))
 }
 
-/// Refuses, before any work, files that could not be written.
-fn check_files(args: &Args) -> Result<()> {
-    let files = [&args.output, &args.visibility, &args.stats];
-    let files: Vec<&PathBuf> = files.into_iter().flatten().collect();
-    if files.is_empty() {
-        return Err(Error::Invalid(
-            "nothing to write: give -o, --visibility or --stats".into(),
-        ));
+impl Args {
+    fn outputs(&self) -> Vec<Output<'_>> {
+        let all = [
+            ("-o", &self.output, Format::Png),
+            ("--visibility", &self.visibility, Format::Exr),
+            ("--stats", &self.stats, Format::Json),
+        ];
+        let named = all.into_iter().filter_map(|(flag, path, format)| {
+            let path = path.as_deref()?;
+            Some(Output { flag, path, format })
+        });
+        named.collect()
     }
-    for (index, file) in files.iter().enumerate() {
-        if files[..index].contains(file) && file.as_path() != Path::new("/dev/null") {
-            return Err(Error::Invalid(format!(
-                "{} is named twice; each output needs a file of its own",
-                file.display()
-            )));
-        }
-        check_writable(file)?;
+
+    /// A note on each flag that is for an output which is not asked for.
+    fn idle_flags(&self, given: &Given) -> Vec<String> {
+        let all = [
+            ("light", "--visibility", self.visibility.is_some()),
+            ("exposure", "-o", self.output.is_some()),
+            ("ambient", "-o", self.output.is_some()),
+            ("counters", "--stats", self.stats.is_some()),
+        ];
+        let idle = all
+            .into_iter()
+            .filter(|(flag, _, asked)| given.has(flag) && !asked);
+        idle.map(|(flag, output, _)| {
+            format!("--{flag} is ignored, for it is about {output}, which is not given.")
+        })
+        .collect()
     }
-    Ok(())
 }
 
-fn render(args: &Args, gpu: &Arc<Gpu>) -> Result<Products> {
+fn render(args: &Args, given: &Given, gpu: &Arc<Gpu>) -> Result<Products> {
     let calibration = Calibration::of(&gpu.info);
-    let shot = args.shot.load(&calibration)?;
+    let mut shot = args.shot.load(&calibration, given)?;
+    shot.notes.extend(args.idle_flags(given));
+    print_notes(&shot);
+    let written = args.outputs().into_iter().map(|output| output.path);
+    outputs::check_read(written, &shot.scene.files)?;
     if let Some(light) = args.light.filter(|&light| light >= shot.lights.len()) {
         return Err(Error::Invalid(format!(
             "there is no light {light}: the shot has {}, counted from 0",
@@ -202,6 +236,8 @@ impl Products {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use clap::Parser;
 
     use super::*;
@@ -253,7 +289,8 @@ mod tests {
         ];
         let mut program = Program::parse_from(arguments);
         program.render.device.loader = Some(faults::loader);
-        let (result, called) = with_fault(None, || run(&program.render));
+        let given = Given::default();
+        let (result, called) = with_fault(None, || run(&program.render, &given));
         result.expect("nothing failed");
         assert_eq!(contents(folder.path()).len(), 3);
         for name in ["a.exr", "a.json"] {
@@ -265,7 +302,7 @@ mod tests {
         let fatal = |&index: &usize| called[index] != "vkCreatePipelineCache";
         let step = slow::cases(16, 1) as usize;
         for index in (0..called.len()).filter(fatal).step_by(step) {
-            let (result, _) = with_fault(Some(index), || run(&program.render));
+            let (result, _) = with_fault(Some(index), || run(&program.render, &given));
             let (error, name) = (result.expect_err("it failed").to_string(), called[index]);
             assert!(error.contains(name), "{name} failed, not: {error}");
             assert!(contents(folder.path()) == before, "{name}, call {index}");

@@ -8,8 +8,9 @@ use halfshade::shot::{Leaf, Mapping, Occluders, Overrides, Pattern, Settings, Sh
 use halfshade::{Error, Result};
 
 use super::calibration::Calibration;
+use super::given::Given;
 use super::load_args::LoadArgs;
-use super::{print_notes, progress};
+use super::progress;
 
 /// What to render and how.
 #[derive(Debug, clap::Args)]
@@ -97,21 +98,31 @@ pub struct ShotArgs {
 }
 
 impl ShotArgs {
-    /// Loads the shot, with the flags' settings; what the flags leave open comes from `calibration`.
-    pub fn load(&self, calibration: &Calibration) -> Result<Shot> {
-        let overrides = Overrides {
-            radius: self.radius,
+    /// # Errors
+    /// A value is out of its range.
+    pub fn check(&self) -> Result<()> {
+        self.overrides().validate()?;
+        self.settings(&Calibration::default()).validate()
+    }
+
+    /// Loads the shot, with the flags' settings and a note on each of the `given` flags that it does not read; what the
+    /// flags leave open comes from `calibration`.
+    pub fn load(&self, calibration: &Calibration, given: &Given) -> Result<Shot> {
+        let overrides = self.overrides();
+        let mut shot = progress::spin("loading", || Shot::load(&self.shot, &overrides))?;
+        shot.settings = self.settings(calibration);
+        shot.notes.extend(unread(&shot, given));
+        Ok(shot)
+    }
+
+    fn overrides(&self) -> Overrides {
+        Overrides {
+            // Adding 0 takes the sign from −0.
+            radius: self.radius.map(|radius| radius + 0.0),
             scene_index: self.scene,
             camera_index: self.camera,
             ..self.load.overrides()
-        };
-        // Flags are cheaper to check than scenes to load.
-        let settings = self.settings(calibration);
-        settings.validate()?;
-        let mut shot = progress::spin("loading", || Shot::load(&self.shot, &overrides))?;
-        print_notes(&shot);
-        shot.settings = settings;
-        Ok(shot)
+        }
     }
 
     fn settings(&self, calibration: &Calibration) -> Settings {
@@ -136,10 +147,30 @@ impl ShotArgs {
             percentage_closer: self.percentage_closer,
             maps: self.maps,
             near_points: self.near_points,
-            bias: self.bias,
+            // Adding 0 takes the sign from −0.
+            bias: self.bias.map(|bias| bias + 0.0),
             counters: self.counters,
         }
     }
+}
+
+/// A note on each flag of a technique that is of no use to any light of the shot.
+fn unread(shot: &Shot, given: &Given) -> Vec<String> {
+    let settings = &shot.settings;
+    let is_read = |flag: &str, point| settings.reads(flag, point) != Some(false);
+    let note = |flag: &&str| match is_read(flag, false) {
+        true => {
+            format!(
+                "--{flag} is ignored, for a light without extent casts a hard shadow whatever the technique."
+            )
+        }
+        false => format!(
+            "--{flag} is ignored, for {} does not read it.",
+            settings.technique
+        ),
+    };
+    let idle = |flag: &&str| !(shot.lights.iter()).any(|light| is_read(flag, light.is_point()));
+    given.flags().filter(idle).map(|flag| note(&flag)).collect()
 }
 
 /// The value of `--packet`; its range is checked with the other settings.

@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 
 use halfshade::Result;
 use halfshade::gpu::Gpu;
+use halfshade::number::sum;
 use halfshade::render::{Frame, Renderer};
 use halfshade::shared::Counters;
 use halfshade::shot::{Settings, Shot};
 use halfshade::spread::Spread;
 use halfshade::study::is_visibility;
 use serde::Serialize;
+
+use super::notes;
 
 /// Times, memory and counts of a render.
 #[derive(Debug, Serialize)]
@@ -34,6 +37,8 @@ pub struct Stats {
     memory_bytes: BTreeMap<&'static str, u64>,
     views: ViewStats,
     validation_messages: usize,
+    /// What was ignored or changed, a sentence each.
+    notes: Vec<String>,
 }
 
 /// A pass, over the frames.
@@ -103,15 +108,15 @@ impl Stats {
                 .lock()
                 .map(|said| said.len())
                 .unwrap_or(0),
+            notes: notes(shot).cloned().collect(),
         })
     }
 
     /// A line for the terminal.
     pub fn summary(&self) -> String {
-        let visibility: f64 = (self.passes.iter())
-            .filter(|pass| is_visibility(&pass.name))
-            .map(|pass| pass.gpu_ms.median)
-            .sum();
+        let passes = self.passes.iter();
+        let of_visibility = passes.filter(|pass| is_visibility(&pass.name));
+        let visibility = sum(of_visibility.map(|pass| pass.gpu_ms.median));
         format!(
             "{}x{} on {}: {:.1} ms, {visibility:.1} ms of them in visibility passes; {} of {} views had casters; {:.1} MB",
             self.size.0,
@@ -135,8 +140,7 @@ impl ViewStats {
             planned: fits.len(),
             with_receivers: fits.iter().filter(|fit| fit.receiver_count > 0).count(),
             with_casters,
-            caster_triangles_mean: fits.iter().map(triangles).sum::<f64>()
-                / with_casters.max(1) as f64,
+            caster_triangles_mean: sum(fits.iter().map(triangles)) / with_casters.max(1) as f64,
             mssm_levels_max: fits.iter().map(|fit| fit.level_count).max().unwrap_or(0),
         })
     }

@@ -9,6 +9,8 @@ mod tune;
 
 use halfshade::Result;
 
+use super::given::Given;
+
 /// Measures error against run time on your shots and device.
 ///
 /// `pareto` sweeps techniques and settings and reports all of them; `merge` joins parts of a sweep that ran on
@@ -30,10 +32,22 @@ enum What {
 }
 
 /// # Errors
-/// What the study fails with.
-pub fn run(args: &Args) -> Result<()> {
+/// What the command line of the study gets wrong.
+pub fn check(args: &Args) -> Result<()> {
     match &args.what {
-        What::Pareto(args) => pareto::run(args),
+        What::Pareto(args) => pareto::check(args),
+        What::Merge(_) => Ok(()),
+        What::Tune(args) => tune::check(args),
+        What::Stability(args) => stability::check(args),
+        What::Figure(args) => figure::check(args),
+    }
+}
+
+/// # Errors
+/// What the study fails with.
+pub fn run(args: &Args, given: &Given) -> Result<()> {
+    match &args.what {
+        What::Pareto(args) => pareto::run(args, given),
         What::Merge(args) => merge::run(args),
         What::Tune(args) => tune::run(args),
         What::Stability(args) => stability::run(args),

@@ -1,5 +1,6 @@
 //! Ray-traced truth: the visibility of an area light by shadow rays to points on it.
 
+use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use glam::{DVec3, Vec2};
@@ -24,10 +25,13 @@ pub const BATCHES: u32 = 8;
 /// cannot be told from the surface itself.
 const OFFSET: f64 = 1.0 / (1 << 21) as f64;
 
+/// Shadow rays per pixel that can be asked for.
+pub const SAMPLES: RangeInclusive<u32> = 16..=65536;
+
 /// How well to trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReferenceOptions {
-    /// [16, 65536] Shadow rays per pixel, rounded up to a multiple of [`BATCHES`].
+    /// In [`SAMPLES`]. Shadow rays per pixel, rounded up to a multiple of [`BATCHES`].
     pub samples: u32,
     /// Another seed gives another image with independent noise.
     pub seed: u64,
@@ -151,10 +155,12 @@ struct Tracer<'a> {
 impl<'a> Tracer<'a> {
     fn new(shot: &'a Shot, light: usize, options: ReferenceOptions) -> Result<Self> {
         let invalid = |message: String| Err(Error::Invalid(message));
-        if !(16..=65536).contains(&options.samples) {
+        if !SAMPLES.contains(&options.samples) {
             return invalid(format!(
-                "{} samples are not between 16 and 65536",
-                options.samples
+                "{} samples are not between {} and {}",
+                options.samples,
+                SAMPLES.start(),
+                SAMPLES.end()
             ));
         }
         if shot.width == 0 || shot.height == 0 {

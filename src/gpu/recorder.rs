@@ -7,6 +7,7 @@ use ash::vk;
 use super::commands::{Commands, Timer};
 use super::device::{Gpu, failed};
 use crate::error::{Error, Result};
+use crate::number::sum;
 
 /// GPU time of each recorded pass, in the order of recording.
 #[derive(Debug, Clone, Default)]
@@ -19,7 +20,7 @@ impl Timings {
     /// [ms] Sum over the passes whose name counts.
     pub fn ms(&self, counts: impl Fn(&str) -> bool) -> f64 {
         let passes = self.passes.iter().filter(|(name, _)| counts(name));
-        passes.map(|(_, ms)| ms).sum()
+        sum(passes.map(|&(_, ms)| ms))
     }
 }
 

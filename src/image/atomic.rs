@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::place::{Place, folder_of, place_of};
 use crate::{Error, Result};
 
 /// A file under a temporary name, which is removed unless `commit` gave it its final one.
@@ -50,8 +51,8 @@ impl Drop for Partial {
 }
 
 /// Writes a file in full or not at all: until `write` has succeeded, whatever stood under `path`
-/// stays as it is. A symbolic link is followed; a device or a pipe (`/dev/stdout`) is written to
-/// directly.
+/// stays as it is. Symbolic links are followed, those too that lead nowhere yet; a device or a pipe
+/// (`/dev/stdout`) is written to directly.
 ///
 /// # Errors
 /// When the folder is missing or not writable, when `path` is a folder, or when `write` fails.
@@ -59,17 +60,14 @@ pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<()> {
-    let target = resolve(path)?;
-    let written = match &target {
-        Target::Stream => OpenOptions::new()
-            .write(true)
-            .open(path)
-            .and_then(|file| fill(file, write)),
-        Target::File(target) => Partial::create(target).and_then(|(partial, file)| {
+    let written = place_of(path).and_then(|place| match place {
+        Place::Stream => fill(OpenOptions::new().write(true).open(path)?, write),
+        Place::File(target) => {
+            let (partial, file) = Partial::create(&target)?;
             fill(file, write)?;
-            partial.commit(target)
-        }),
-    };
+            partial.commit(&target)
+        }
+    });
     written.map_err(|source| Error::io(path, source))
 }
 
@@ -78,60 +76,17 @@ pub fn write_atomically(
 /// # Errors
 /// The same sentence that writing would fail with.
 pub fn check_writable(path: &Path) -> Result<()> {
-    match resolve(path)? {
-        Target::Stream => Ok(()),
-        Target::File(target) => Partial::create(&target)
-            .map(drop)
-            .map_err(|source| Error::io(path, source)),
-    }
+    let checked = place_of(path).and_then(|place| match place {
+        Place::Stream => Ok(()),
+        Place::File(target) => Partial::create(&target).map(drop),
+    });
+    checked.map_err(|source| Error::io(path, source))
 }
 
 fn fill(file: File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut buffered = BufWriter::new(file);
     write(&mut buffered)?;
     buffered.flush()
-}
-
-/// What stands, or will stand, under a path.
-enum Target {
-    /// A regular file, all links followed.
-    File(PathBuf),
-    /// A device or a pipe: renaming a file over it would destroy it.
-    Stream,
-}
-
-fn resolve(path: &Path) -> Result<Target> {
-    let refuse = |kind, message: String| Err(Error::io(path, io::Error::new(kind, message)));
-    match fs::metadata(path) {
-        Ok(found) if found.is_dir() => {
-            return refuse(
-                io::ErrorKind::IsADirectory,
-                "is a folder, not a file".into(),
-            );
-        }
-        Ok(found) if !found.is_file() => return Ok(Target::Stream),
-        Ok(_) => {
-            let resolved = fs::canonicalize(path).map_err(|source| Error::io(path, source))?;
-            return Ok(Target::File(resolved));
-        }
-        Err(_) => {}
-    }
-    if path.file_name().is_none() {
-        return refuse(io::ErrorKind::InvalidInput, "is not a file name".into());
-    }
-    let folder = folder_of(path);
-    if !folder.is_dir() {
-        let message = format!("the folder {} does not exist", folder.display());
-        return refuse(io::ErrorKind::NotFound, message);
-    }
-    Ok(Target::File(path.to_path_buf()))
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
 }
 
 #[cfg(test)]
@@ -211,6 +166,16 @@ mod tests {
         write_atomically(&link, |file| file.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        // A chain of links that leads nowhere yet.
+        let (chain, dangling) = (folder.path().join("chain"), folder.path().join("dangling"));
+        std::os::unix::fs::symlink("made", &dangling).unwrap();
+        std::os::unix::fs::symlink("dangling", &chain).unwrap();
+        check_writable(&chain).unwrap();
+        write_atomically(&chain, |file| file.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(folder.path().join("made")).unwrap(), b"new");
+        for link in [&chain, &dangling] {
+            assert!(fs::symlink_metadata(link).unwrap().is_symlink());
+        }
         write_atomically(Path::new("/dev/null"), |file| file.write_all(b"gone")).unwrap();
         assert!(
             fs::metadata("/dev/null")

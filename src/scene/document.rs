@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 use std::cell::{OnceCell, RefCell};
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
@@ -209,6 +209,35 @@ impl<'a> Document<'a> {
         Ok(bytes)
     }
 
+    /// The files of all buffers and images that it refers to, those too that nothing reads.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let buffers = self
+            .root
+            .buffers
+            .iter()
+            .filter_map(|buffer| buffer.uri.as_ref());
+        let images = self
+            .root
+            .images
+            .iter()
+            .filter_map(|image| image.uri.as_ref());
+        let uris = buffers
+            .chain(images)
+            .filter(|uri| !uri.starts_with("data:"));
+        let named: BTreeSet<PathBuf> = uris
+            .filter_map(|uri| Some(self.folder().join(NamedFile::new(uri)?.path)))
+            .collect();
+        named.into_iter().collect()
+    }
+
+    /// In which its other files lie.
+    fn folder(&self) -> &Path {
+        match self.path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        }
+    }
+
     /// The file that a URI names, by its one real path.
     fn resource_path(&self, uri: &str, user: &str) -> Result<PathBuf> {
         let refused = |why: &str| {
@@ -217,10 +246,7 @@ impl<'a> Document<'a> {
         };
         let named =
             NamedFile::new(uri).ok_or_else(|| refused("which names no file on this machine"))?;
-        let folder = match self.path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
+        let folder = self.folder();
         if !self.outside_paths && !named.is_below() {
             return Err(refused(
                 "which is not a path below the folder of the glTF; if it is to be trusted, pass --allow-outside-paths",

@@ -4,6 +4,8 @@
 //! and `size` × `rect.aspect` wide (local x), a `disk` has the diameter `size`; both shine along the
 //! node's −Z and grow with the largest component of its world scale.
 
+use std::cell::Cell;
+
 use glam::{DAffine3, DVec3, Vec3};
 use gltf::json::Node;
 use gltf::json::camera::Perspective;
@@ -72,6 +74,8 @@ pub(super) struct Emitters<'a> {
     document: &'a Document<'a>,
     area_lights: Vec<AreaLightJson>,
     punctual_radius: Option<f64>,
+    /// Whether a light has taken that radius.
+    radius_taken: Cell<bool>,
     /// [scene units, world]
     scene_center: DVec3,
     /// [scene units] The length of the bounding box's diagonal.
@@ -100,9 +104,15 @@ impl<'a> Emitters<'a> {
             document,
             area_lights: area_lights.lights,
             punctual_radius,
+            radius_taken: Cell::new(false),
             scene_center: 0.5 * (low + high),
             scene_extent: (high - low).length(),
         })
+    }
+
+    /// Whether the radius is of no use to the lights so far.
+    pub fn radius_is_idle(&self) -> bool {
+        self.punctual_radius.is_some() && !self.radius_taken.get()
     }
 
     /// The light of a node, if it has one that can be rendered.
@@ -211,6 +221,7 @@ impl<'a> Emitters<'a> {
             );
             return Ok(None);
         };
+        self.radius_taken.set(true);
         notes.add(
             "the intensity of a point or spot light is ignored; it is set to suit the view",
             &name,

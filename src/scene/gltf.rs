@@ -27,6 +27,8 @@ pub struct LoadOptions {
     /// The file may name files outside of its own folder, be it by `..`, by a link, by an absolute path
     /// or by a `file:` URL.
     pub outside_paths: bool,
+    /// The caller has lights of its own: nothing is noted about those of the file.
+    pub own_lights: bool,
     pub limits: Limits,
 }
 
@@ -95,7 +97,9 @@ impl Default for Limits {
 /// When a file cannot be read, is malformed, requires an unknown extension or exceeds a limit; the
 /// message names the file and the object in it.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene> {
-    parse(path, &file::read(path)?, options)
+    let mut scene = parse(path, &file::read(path)?, options)?;
+    scene.files.push(path.into());
+    Ok(scene)
 }
 
 /// As [`load`], from bytes that were read from `path` before.
@@ -119,9 +123,14 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     }
     let mut scene = assemble(&document, geometry, &options.limits, &mut notes)?;
     let emitters = Emitters::new(&document, options.punctual_radius, &scene)?;
+    let mut light_notes = Notes::default();
     for place in &placed {
-        scene.lights.extend(emitters.light(place, &mut notes)?);
+        let light = emitters.light(place, &mut light_notes)?;
+        scene.lights.extend(light);
         scene.cameras.extend(emitters.camera(place, &mut notes)?);
+    }
+    if !options.own_lights {
+        notes.append(light_notes);
     }
     let ignored = document.ignored_extensions();
     if !ignored.is_empty() {
@@ -130,7 +139,12 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
             &format!("extensions {}", ignored.join(", ")),
         );
     }
+    scene.files = document.files();
     scene.notes = notes.into_sentences();
+    if emitters.radius_is_idle() && !options.own_lights {
+        let note = "--radius is ignored, for the scene has no point or spot light.";
+        scene.notes.push(note.into());
+    }
     Ok(scene)
 }
 

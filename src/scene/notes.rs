@@ -13,6 +13,10 @@ impl Notes {
         }
     }
 
+    pub fn append(&mut self, mut other: Self) {
+        self.0.append(&mut other.0);
+    }
+
     /// One sentence per kind, in the order in which the kinds first occurred.
     pub fn into_sentences(self) -> Vec<String> {
         let sentence = |(what, first, count)| match count {

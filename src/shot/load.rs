@@ -9,11 +9,14 @@ use serde::de::IgnoredAny;
 
 use super::{MAX_SIZE, Settings, Shot};
 use crate::scene::gltf::{self, Limits, LoadOptions};
-use crate::scene::{AreaLight, Camera, LightShape, Scene, file};
+use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, Scene, file};
 use crate::{Error, Result};
 
 /// [pixel] Height (and without an aspect ratio, width) of an image for which nobody states a size.
 const DEFAULT_HEIGHT: u32 = 512;
+
+/// Keys of a shot file that say something to people.
+const FOR_PEOPLE: [&str; 2] = ["name", "what"];
 
 /// What a caller states over the heads of the files.
 #[derive(Debug, Clone, Default)]
@@ -89,7 +92,9 @@ impl Shot {
     /// # Errors
     /// When a file cannot be read or what it describes cannot be rendered.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Shot> {
-        Self::parse(path, &file::read(path)?, overrides)
+        let mut draft = Draft::parse(path, &file::read(path)?, overrides)?;
+        draft.scene.files.push(path.into());
+        Self::completed(draft, path, overrides)
     }
 
     /// As [`Self::load`], from bytes that were read from `path` before.
@@ -97,10 +102,7 @@ impl Shot {
     /// # Errors
     /// As [`Self::load`].
     pub fn parse(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Shot> {
-        match is_gltf(path, bytes) {
-            true => Self::from_gltf(path, bytes, overrides),
-            false => Self::completed(read_shot_file(path, bytes, overrides)?, path, overrides),
-        }
+        Self::completed(Draft::parse(path, bytes, overrides)?, path, overrides)
     }
 
     /// A glTF that is already in memory and brings its own camera and light; `path` names it in messages
@@ -109,8 +111,7 @@ impl Shot {
     /// # Errors
     /// When it is malformed, refers to a file that cannot be read, or cannot be rendered.
     pub fn from_gltf(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Shot> {
-        let scene = gltf::parse(path, bytes, &overrides.load_options())?;
-        Self::completed(Draft::new(scene), path, overrides)
+        Self::completed(Draft::of_gltf(path, bytes, overrides)?, path, overrides)
     }
 
     fn completed(mut shot: Draft, path: &Path, overrides: &Overrides) -> Result<Shot> {
@@ -126,12 +127,24 @@ impl Shot {
 }
 
 impl Overrides {
+    /// # Errors
+    /// [`Error::Invalid`] when the radius is no length.
+    pub fn validate(&self) -> Result<()> {
+        match self.radius {
+            Some(radius) if !(0.0..=MAX_COORDINATE).contains(&radius) => Err(Error::Invalid(
+                format!("a light's radius is from 0 to 1e18, not {radius}"),
+            )),
+            _ => Ok(()),
+        }
+    }
+
     fn load_options(&self) -> LoadOptions {
         LoadOptions {
             scene: self.scene_index,
             punctual_radius: self.radius,
             outside_paths: self.outside_paths,
             limits: self.limits.clone(),
+            ..LoadOptions::default()
         }
     }
 }
@@ -155,7 +168,10 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
     let shot: ShotFile = serde_ignored::deserialize(&mut json, |key| {
         // Where a value is optional, serde_ignored marks it with a question mark.
         let key = key.to_string().replace(".?", "");
-        notes.push(format!("The key {key:?} is ignored."));
+        let last = key.rsplit('.').next().unwrap_or_default();
+        if !FOR_PEOPLE.contains(&last) {
+            notes.push(format!("The key {key:?} is ignored."));
+        }
     })
     .map_err(broken)?;
     json.end().map_err(broken)?;
@@ -170,15 +186,29 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
         (None, lights) => lights.unwrap_or_default(),
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let scene = gltf::load(&folder.join(shot.scene), &overrides.load_options())?;
+    let options = LoadOptions {
+        own_lights: !lights.is_empty(),
+        ..overrides.load_options()
+    };
+    let scene = gltf::load(&folder.join(shot.scene), &options)?;
     let mut draft = Draft::new(scene);
     draft.notes = notes;
+    if overrides.radius.is_some() && options.own_lights {
+        let note = "--radius is ignored, for the shot file has lights of its own.";
+        draft.notes.push(note.into());
+    }
     if let Some(camera) = shot.camera {
+        if overrides.camera_index.is_some() {
+            let note = "--camera is ignored, for the shot file has a camera of its own.";
+            draft.notes.push(note.into());
+        }
         draft.size = Size(camera.width, camera.height);
         draft.camera = Some(camera.into());
     }
     for (index, light) in lights.into_iter().enumerate() {
-        if light.texture.is_some() {
+        if let Some(texture) = &light.texture {
+            let file = texture.as_str().map(|file| folder.join(file));
+            draft.scene.files.extend(file);
             draft.notes.push(format!(
                 "Light {index}: textures of lights are not supported yet; it shines uniformly."
             ));
@@ -210,6 +240,18 @@ struct Draft {
 }
 
 impl Draft {
+    fn parse(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Self> {
+        match is_gltf(path, bytes) {
+            true => Self::of_gltf(path, bytes, overrides),
+            false => read_shot_file(path, bytes, overrides),
+        }
+    }
+
+    fn of_gltf(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Self> {
+        let scene = gltf::parse(path, bytes, &overrides.load_options())?;
+        Ok(Self::new(scene))
+    }
+
     fn new(scene: Scene) -> Self {
         Self {
             scene,

@@ -26,7 +26,7 @@ use super::subject::Subject;
 pub struct Protocol {
     /// Timed frames of each candidate, ≥ 1, after one to warm up.
     pub repeat: u32,
-    /// [s] A candidate that has used this much wall time gets no further frame.
+    /// [s] A candidate that has used this much wall time gets no further frame but its first timed one.
     pub seconds: f64,
     /// Whether to count nodes and samples, in a frame of its own.
     pub counters: bool,
@@ -55,17 +55,23 @@ pub struct Bench<'a> {
     interrupted: &'a AtomicBool,
 }
 
-/// A candidate that has rendered its first frame.
+/// A candidate that has rendered a frame, which the driver may have compiled shaders in: it is not timed.
 struct Warm {
     /// Index among the settings of the group.
     index: usize,
     renderer: Renderer,
-    first: Timings,
     frames: Vec<Timings>,
     /// [s] Wall time spent.
     spent: f64,
     errors: Errors,
     pictures: Pictures,
+}
+
+impl Warm {
+    /// Whether it has a time, and has used up its wall time [s].
+    fn is_spent(&self, seconds: f64) -> bool {
+        !self.frames.is_empty() && self.spent > seconds
+    }
 }
 
 impl<'a> Bench<'a> {
@@ -158,13 +164,12 @@ impl<'a> Bench<'a> {
         let start = Instant::now();
         let shot = with_settings(&subject.shot, settings);
         let mut renderer = Renderer::new(self.gpu, &shot, self.options())?;
-        let first = renderer.render()?.timings;
+        renderer.render()?;
         let spent = start.elapsed().as_secs_f64();
         let (errors, pictures) = judge(subject, &mut renderer)?;
         Ok(Warm {
             index,
             renderer,
-            first,
             frames: Vec::new(),
             spent,
             errors,
@@ -172,7 +177,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Renders the timed frames. Who has failed has an outcome.
+    /// Renders the timed frames, at least one for each candidate. Who has failed has an outcome.
     fn take_turns(
         &self,
         warm: &mut [Warm],
@@ -183,7 +188,7 @@ impl<'a> Bench<'a> {
         for round in 0..self.protocol.repeat as usize {
             for turn in turns(round, warm.len()) {
                 let ready = &mut warm[turn];
-                if ready.spent > self.protocol.seconds || outcomes.contains_key(&ready.index) {
+                if ready.is_spent(self.protocol.seconds) || outcomes.contains_key(&ready.index) {
                     continue;
                 }
                 self.check_interrupted()?;
@@ -210,10 +215,6 @@ impl<'a> Bench<'a> {
         settings: &Settings,
         mut ready: Warm,
     ) -> Result<(Measured, Pictures)> {
-        let warm = !ready.frames.is_empty();
-        if !warm {
-            ready.frames.push(ready.first);
-        }
         if self.protocol.flicker_frames > 0 {
             let frames = self.protocol.flicker_frames;
             let value = flicker(self.gpu, subject, settings, frames, self.options())?;
@@ -229,7 +230,7 @@ impl<'a> Bench<'a> {
         let resources = resources.map(|&(name, bytes)| (name.to_owned(), bytes));
         let measured = Measured {
             frames: ready.frames.len(),
-            warm,
+            warm: true,
             shadow_ms: times.of(is_shadow),
             visibility_ms: times.of(is_visibility),
             raster_ms: times.of(is_raster),

@@ -16,6 +16,8 @@ mod truth;
 mod yang09;
 mod yang09_packets;
 
+use std::path::{Path, PathBuf};
+
 use crate::shot::{Settings, Shot};
 use crate::{Error, Result};
 
@@ -152,17 +154,29 @@ impl Experiment {
         (self.judge)(rows)
     }
 
+    /// # Errors
+    /// There are shots and it takes none.
+    pub fn check_shots(&self, count: usize) -> Result<()> {
+        match count == 0 || self.takes_shots {
+            true => Ok(()),
+            false => Err(Error::Invalid(format!(
+                "{} brings its own scenes; leave out the shots",
+                self.name
+            ))),
+        }
+    }
+
+    /// Its files in a folder: table, everything, and plot.
+    pub fn files(&self, folder: &Path) -> [PathBuf; 3] {
+        ["csv", "json", "svg"].map(|ending| folder.join(format!("{}.{ending}", self.name)))
+    }
+
     /// What is measured at a scale.
     ///
     /// # Errors
     /// There are shots and it takes none, or one cannot be made.
     pub fn trials(&'static self, scale: Scale, shots: &[NamedShot]) -> Result<Trials> {
-        if !(shots.is_empty() || self.takes_shots) {
-            return Err(Error::Invalid(format!(
-                "{} brings its own scenes; leave out the shots",
-                self.name
-            )));
-        }
+        self.check_shots(shots.len())?;
         Ok(Trials {
             experiment: self,
             scale,

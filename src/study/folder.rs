@@ -12,6 +12,11 @@ use super::bench::Pictures;
 use super::run::{Machine, Run};
 use super::{page, plot, sheet, table};
 
+/// In which runs, what they look like, and contact sheets lie.
+const SUBFOLDERS: [&str; 4] = ["runs", "pictures", "errors", "sheets"];
+/// What is made of all runs.
+const REPORTS: [&str; 4] = ["results.json", "results.csv", "pareto.svg", "index.html"];
+
 /// A study on disk:
 ///
 /// - `runs/KEY.json`: each run, with everything needed to repeat it
@@ -81,11 +86,27 @@ impl Folder {
                 )));
             }
         }
-        for sub in ["runs", "pictures", "errors", "sheets"] {
+        for sub in SUBFOLDERS {
             let sub = path.join(sub);
             fs::create_dir_all(&sub).map_err(|error| Error::io(sub, error))?;
         }
         Ok(folder)
+    }
+
+    /// The files that are there now and that the study may write: its reports, and all in its subfolders.
+    ///
+    /// # Errors
+    /// A folder cannot be read.
+    pub fn files(&self) -> Result<Vec<PathBuf>> {
+        let reports = REPORTS.into_iter().map(|name| self.path.join(name));
+        let mut files: Vec<PathBuf> = reports.filter(|file| file.exists()).collect();
+        for sub in SUBFOLDERS.into_iter().map(|sub| self.path.join(sub)) {
+            let failed = |error| Error::io(&sub, error);
+            for entry in fs::read_dir(&sub).map_err(failed)? {
+                files.push(entry.map_err(failed)?.path());
+            }
+        }
+        Ok(files)
     }
 
     fn runs_folder(&self) -> PathBuf {
@@ -185,17 +206,17 @@ impl Folder {
                 "no run is finished, so there is nothing to report".into(),
             ));
         }
-        write_json(&self.path.join("results.json"), &runs)?;
-        let csv = table::csv(&runs)?;
-        write_text(&self.path.join("results.csv"), &csv)?;
+        let [json, csv, svg, html] = REPORTS.map(|name| self.path.join(name));
+        write_json(&json, &runs)?;
+        write_text(&csv, &table::csv(&runs)?)?;
         let plot = plot::pareto(&runs)?;
-        write_text(&self.path.join("pareto.svg"), &plot)?;
+        write_text(&svg, &plot)?;
         let sheets = sheet::sheets(self, &runs)?;
         for sheet in &sheets {
             write_text(&self.path.join("sheets").join(&sheet.file), &sheet.svg)?;
         }
         let page = page::page(&runs, &plot, &sheets)?;
-        write_text(&self.path.join("index.html"), &page)
+        write_text(&html, &page)
     }
 }
 

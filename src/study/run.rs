@@ -77,8 +77,7 @@ pub enum Outcome {
 pub struct Measured {
     /// Timed frames.
     pub frames: usize,
-    /// False: a frame took longer than a candidate's time, so the first one, which has the driver's compiling in it,
-    /// is the only one.
+    /// False in runs of older versions whose only frame has the driver's compiling in it.
     pub warm: bool,
     /// [ms] Everything that a frame without shadows has not: maps, structures, traversal, resolve.
     pub shadow_ms: Spread,

@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use crate::compare::faces_wholly;
 use crate::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
-use crate::image::{MAX_SAMPLES, Plane, read_exr, write_exr};
+use crate::image::{MAX_SAMPLES, Plane, is_same_file, read_exr, write_exr};
+use crate::number::sum;
 use crate::scene::Texture;
 use crate::shot::{Overrides, Shot};
 use crate::{Error, Result};
@@ -29,6 +31,8 @@ pub struct Subject {
     pub visibility: Plane,
     /// Likewise the share of each light that is in front of the surface.
     pub facing: Plane,
+    /// Likewise the standard error of the visibility.
+    pub standard_error: Plane,
 }
 
 impl Subject {
@@ -47,21 +51,30 @@ impl Subject {
         cancel: &AtomicBool,
     ) -> Result<Self> {
         let shot = Shot::load(file, overrides)?;
-        Self::of_shot(
-            &file_name(file),
-            file,
-            shot,
-            cache,
-            options,
-            progress,
-            cancel,
-        )
+        let name = Self::name_of(file);
+        Self::of_shot(&name, file, shot, cache, options, progress, cancel)
+    }
+
+    /// The standard error of the truth, on the mean over shadow pixels that face the whole light; 0 without any. A mean
+    /// absolute error of this size is the truth's own.
+    pub fn noise(&self) -> f64 {
+        let (truths, facing) = (&self.visibility.data, &self.facing.data);
+        let pixels = truths.iter().zip(facing).zip(&self.standard_error.data);
+        let counted = pixels.filter(|((truth, facing), _)| **truth < 1.0 && faces_wholly(**facing));
+        let errors: Vec<f64> = counted.map(|(_, error)| f64::from(*error)).collect();
+        sum(errors.iter().copied()) / errors.len().max(1) as f64
+    }
+
+    /// What the shot of a file is called.
+    pub fn name_of(file: &Path) -> String {
+        let stem = file.file_stem().unwrap_or(file.as_os_str());
+        stem.to_string_lossy().into_owned()
     }
 
     /// Like [`Self::load`], of a shot that is in memory and known as `name`.
     ///
     /// # Errors
-    /// It cannot be traced, or `cancel` was set.
+    /// It cannot be traced, the truth would be kept in a file that the shot is read from, or `cancel` was set.
     pub fn of_shot(
         name: &str,
         file: &Path,
@@ -77,6 +90,7 @@ impl Subject {
         for light in 0..lights {
             let share = |done| progress((light as f64 + done) / lights as f64);
             let file = truth_file(cache, &content, light, options);
+            check_apart(&file, &shot)?;
             images.push(cached_truth(&file, &shot, light, options, &share, cancel)?);
         }
         let stacked = |plane: fn(&ReferenceImage) -> &Plane| {
@@ -94,14 +108,25 @@ impl Subject {
             truth_samples: options.samples,
             visibility: stacked(|image| &image.visibility)?,
             facing: stacked(|image| &image.facing)?,
+            standard_error: stacked(|image| &image.standard_error)?,
             shot,
         })
     }
 }
 
-fn file_name(file: &Path) -> String {
-    let stem = file.file_stem().unwrap_or(file.as_os_str());
-    stem.to_string_lossy().into_owned()
+fn check_apart(truth: &Path, shot: &Shot) -> Result<()> {
+    match shot
+        .scene
+        .files
+        .iter()
+        .find(|file| is_same_file(file, truth))
+    {
+        Some(file) => Err(Error::Invalid(format!(
+            "{} is read, so no truth is kept there; name another folder for truths",
+            file.display()
+        ))),
+        None => Ok(()),
+    }
 }
 
 fn truth_file(cache: &Path, content: &str, light: usize, options: ReferenceOptions) -> PathBuf {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::Result;
 use crate::shot::{Occluders, Settings, Technique};
 
 /// What to try: the usual settings of each technique, and of each knob that is named all its values in place of the
@@ -27,6 +28,19 @@ pub struct Sweep {
 impl Sweep {
     /// All combinations, each once: knobs that a technique does not read multiply nothing.
     pub fn settings(&self) -> Vec<Settings> {
+        let mut all = self.combinations();
+        let mut known = BTreeSet::new();
+        all.retain(|settings| known.insert(settings.flags()));
+        all
+    }
+
+    /// # Errors
+    /// A value is out of its range, whether or not a technique reads it.
+    pub fn validate(&self) -> Result<()> {
+        self.combinations().iter().try_for_each(Settings::validate)
+    }
+
+    fn combinations(&self) -> Vec<Settings> {
         let techniques = match self.techniques.is_empty() {
             true => Technique::ALL,
             false => &self.techniques,
@@ -58,8 +72,6 @@ impl Sweep {
         vary(&mut all, &self.biases, |settings, &bias| {
             settings.bias = Some(bias);
         });
-        let mut known = BTreeSet::new();
-        all.retain(|settings| known.insert(settings.flags()));
         all
     }
 }
@@ -139,5 +151,18 @@ mod tests {
         };
         // Packets: 2 splits × 3 maps × 2 packets; hard: nearest and 3×3, times 2 splits × 3 maps.
         assert_eq!(sweep.settings().len(), 12 + 12);
+        sweep.validate().unwrap();
+    }
+
+    #[test]
+    fn values_out_of_range_are_refused_where_nothing_reads_them_too() {
+        let sweep = Sweep {
+            techniques: vec![Technique::Hard],
+            layers: vec![1, 9],
+            ..Sweep::default()
+        };
+        assert!(sweep.settings().iter().all(|settings| settings.layers == 1));
+        let error = sweep.validate().unwrap_err().to_string();
+        assert!(error.contains("1 to 4, not 9"), "{error}");
     }
 }

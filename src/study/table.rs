@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::compare::Metrics;
+use crate::number::decimals;
 use crate::{Error, Result};
 
 use super::run::{Measured, Outcome, Run};
@@ -28,7 +29,7 @@ pub(super) const COLUMNS: &[Column] = &[
     ("mae_shadow_all", |run| {
         of(run, |m| maybe(m.errors.mae_shadow_all))
     }),
-    ("flip", |run| of(run, |m| format!("{:.6}", m.errors.flip))),
+    ("flip", |run| of(run, |m| decimals(m.errors.flip, 6))),
     ("flicker", |run| of(run, |m| maybe(m.errors.flicker))),
     ("shadow_pixels", |run| {
         of(run, |m| m.errors.metrics.shadow_pixels.to_string())
@@ -62,7 +63,7 @@ pub(super) const COLUMNS: &[Column] = &[
 ];
 
 fn maybe(value: Option<f64>) -> String {
-    value.map(|value| format!("{value:.6}")).unwrap_or_default()
+    value.map(|value| decimals(value, 6)).unwrap_or_default()
 }
 
 fn of(run: &Run, value: impl Fn(&Measured) -> String) -> String {
@@ -70,13 +71,11 @@ fn of(run: &Run, value: impl Fn(&Measured) -> String) -> String {
 }
 
 fn error(run: &Run, value: fn(&Metrics) -> f64) -> String {
-    of(run, |measured| {
-        format!("{:.6}", value(&measured.errors.metrics))
-    })
+    of(run, |measured| decimals(value(&measured.errors.metrics), 6))
 }
 
 fn ms(run: &Run, value: fn(&Measured) -> f64) -> String {
-    of(run, |measured| format!("{:.3}", value(measured)))
+    of(run, |measured| decimals(value(measured), 3))
 }
 
 fn counted(run: &Run, name: &str) -> String {

@@ -127,7 +127,11 @@ fn compile(workshop: &Workshop, program: &str) -> Command {
 #[test]
 fn the_standalone_tier_does_what_its_header_says() {
     let workshop = Workshop::new();
-    done(compile(&workshop, "whole_tier.c").arg(root().join("scenes/plate.gltf")));
+    let files = [
+        root().join("scenes/plate.gltf"),
+        workshop.path("absent.gltf"),
+    ];
+    done(compile(&workshop, "whole_tier.c").args(files));
 }
 
 #[test]
@@ -178,7 +182,7 @@ fn the_program_and_c_give_the_same_bits() {
         Command::new(env!("CARGO_BIN_EXE_halfshade"))
             .args(["render", "--visibility"])
             .args([&exr, &shot])
-            .env("XDG_DATA_HOME", "/nonexistent"),
+            .env("XDG_DATA_HOME", workshop.path("data")),
     );
     done(compile(&workshop, "same_shot.c").args([&shot, &raw]));
     let planes = read_exr(&exr, MAX_SAMPLES).expect("the program has written it");

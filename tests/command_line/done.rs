@@ -124,16 +124,21 @@ fn several_lights_have_a_channel_each() {
     assert_eq!((one.len(), one[0].0.as_str()), (1, "Y"));
     let bits = |data: &[f32]| data.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&one[0].1.data), bits(hard));
-}
 
-#[test]
-fn unknown_keys_are_noted_and_ignored() {
-    let (folder, mut shot) = (Folder::new(), plate());
-    shot["weather"] = json!("fine");
-    folder.write_shot(&shot);
-    let run = folder.run(&["plan", "shot.json"]);
-    assert_eq!(run.code, Some(0), "{}", run.err);
-    assert_eq!(run.err, "note: The key \"weather\" is ignored.\n");
+    // One light of several against the visibility of that one alone, whichever is the reference.
+    for pair in [["all.exr", "one.exr"], ["one.exr", "all.exr"]] {
+        let compare =
+            |channel| [&["compare"], &pair[..], &["--json", "--channel", channel]].concat();
+        let metrics: Value = serde_json::from_str(&folder.does(&compare("Y1"))).unwrap();
+        assert_eq!(metrics["max"], json!(0.0));
+        let metrics: Value = serde_json::from_str(&folder.does(&compare("Y0"))).unwrap();
+        assert!(metrics["max"].as_f64() > Some(0.0));
+        folder.refuses(&compare("Y2"), &["has no channel Y2"]);
+    }
+    folder.refuses(
+        &["compare", "one.exr", "one.exr", "--channel", "Y1"],
+        &["has no channel Y1"],
+    );
 }
 
 #[test]

@@ -28,6 +28,29 @@ pub fn plate() -> Value {
     })
 }
 
+/// The program, as [`at_home`].
+pub fn program() -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_halfshade"));
+    at_home(&mut program);
+    program
+}
+
+/// Gives a command folders of these tests in place of the user's: nobody calibrates there, and pipeline caches stay,
+/// which a device needs to start in reasonable time.
+pub fn at_home(command: &mut Command) -> &mut Command {
+    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("home");
+    for (variable, folder) in [
+        ("HOME", ""),
+        ("XDG_DATA_HOME", "data"),
+        ("XDG_CACHE_HOME", "cache"),
+    ] {
+        command.env(variable, home.join(folder));
+    }
+    // Mesa makes no folders above its own.
+    std::fs::create_dir_all(home.join("cache")).expect("a folder");
+    command
+}
+
 impl Folder {
     pub fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
@@ -45,19 +68,21 @@ impl Folder {
         self.write("shot.json", shot.to_string());
     }
 
-    /// Runs the program here, with nothing from the user's own folders but the pipeline caches that a
-    /// device needs to start in reasonable time.
+    /// The program, to be run here.
+    pub fn program(&self) -> Command {
+        let mut program = program();
+        program.current_dir(self.0.path());
+        program
+    }
+
+    /// Runs the program here.
     pub fn run(&self, args: &[&str]) -> Run {
+        let output = self.program().args(args).output();
         let Output {
             status,
             stdout,
             stderr,
-        } = Command::new(env!("CARGO_BIN_EXE_halfshade"))
-            .args(args)
-            .current_dir(self.0.path())
-            .env("XDG_DATA_HOME", "/nonexistent")
-            .output()
-            .expect("the program starts");
+        } = output.expect("the program starts");
         Run {
             code: status.code(),
             out: String::from_utf8(stdout).expect("UTF-8"),

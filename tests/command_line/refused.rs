@@ -87,19 +87,14 @@ fn cameras_lights_and_sizes_that_make_no_sense() {
     }
 }
 
+/// What the shot or the machine has no room for.
 #[test]
-fn settings_out_of_range() {
+fn values_that_the_shot_does_not_allow() {
     let folder = Folder::new();
     folder.write_shot(&plate());
     for (flag, value, range) in [
-        ("--map", "0", "16 to 8192"),
-        ("--map", "65536", "16 to 8192"),
-        ("--split", "0", "1 to 16"),
-        ("--split", "17", "1 to 16"),
-        ("--packet", "9x9", "1x1 to 8x8"),
-        ("--bias", "NaN", "finite"),
         ("--light", "1", "there is no light 1"),
-        ("--ambient", "inf", "finite"),
+        ("--scene", "7", "has no scene 7"),
         ("--max-memory", "1KiB", "--max-memory allows 1.0 KiB"),
         (
             "--max-seconds",
@@ -142,6 +137,24 @@ fn wrong_usage() {
     let folder = Folder::new();
     folder.write_shot(&plate());
     for (flag, value, word) in [
+        ("--map", "0", "16 to 8192"),
+        ("--map", "15", "16 to 8192"),
+        ("--map", "8193", "16 to 8192"),
+        ("--split", "0", "1 to 16"),
+        ("--split", "17", "1 to 16"),
+        ("--packet", "9x9", "1x1 to 8x8"),
+        ("--mssm-bits", "24", "16 or 32"),
+        ("--layers", "5", "1 to 4"),
+        ("--light-samples", "7", "8 to 16"),
+        ("--blocker-samples", "0", "1 to 1024"),
+        ("--filter-samples", "1025", "1 to 1024"),
+        ("--maps", "4097", "1 to 4096"),
+        ("--bias", "NaN", "finite"),
+        ("--bias", "inf", "finite"),
+        ("--radius", "NaN", "from 0"),
+        ("--ambient", "inf", "finite"),
+        ("--exposure", "inf", "finite"),
+        ("--exposure", "128", "below 128"),
         ("--technique", "sorcery", "packet-contour"),
         ("--leaf", "oak", "per-pixel"),
         ("--mapping", "mercator", "lanes"),
@@ -159,6 +172,74 @@ fn wrong_usage() {
     folder.refuses_usage(&["paint", "shot.json"], &["paint"]);
     folder.refuses_usage(&["reference", "shot.json"], &["required"]);
     folder.refuses_usage(&["compare", "a.exr"], &["required"]);
+    folder.refuses_usage(
+        &["compare", "a.png", "b.exr"],
+        &["cannot be compared with each other"],
+    );
+    for more in [&["--facing"][..], &["--channel", "Y1"]] {
+        let args = [&["compare", "a.png", "b.png"], more].concat();
+        folder.refuses_usage(&args, &["for .exr images"]);
+    }
+    folder.refuses_usage(&["plan", "shot.json", "--split", "17"], &["1 to 16"]);
+    folder.refuses_usage(&["plan", "shot.json", "--radius=-1"], &["from 0"]);
+    folder.refuses_usage(
+        &["reference", "shot.json", "-o", "r.exr", "--samples", "8"],
+        &["16..=65536"],
+    );
+    // Usage goes before what the machine or a file lacks.
+    folder.refuses_usage(
+        &[
+            "render", "no.json", "--device", "abacus", "--map", "15", "-o", "no/a.png",
+        ],
+        &["16 to 8192"],
+    );
+}
+
+/// Of the studies, none of which starts to measure.
+#[test]
+fn wrong_usage_of_studies() {
+    let folder = Folder::new();
+    let pareto = ["study", "pareto", "no.json", "-o", "out"];
+    let tune = ["study", "tune", "no.json"];
+    for (command, more, word) in [
+        (&pareto[..], &["--maps", "512,15"][..], "16 to 8192"),
+        (&pareto, &["--splits", "17"], "1 to 16"),
+        (&pareto, &["--packets", "9x9"], "1x1 to 8x8"),
+        (&pareto, &["--biases", "NaN"], "finite"),
+        (&pareto, &["--seconds", "0"], "more than 0"),
+        (&pareto, &["--seconds", "NaN"], "more than 0"),
+        (&pareto, &["--repeat", "0"], "1..=10000"),
+        (&pareto, &["--samples", "8"], "16..=65536"),
+        (&pareto, &["--shard", "3/3"], "I/N"),
+        // Whether a technique reads it or not.
+        (
+            &pareto,
+            &["--techniques", "hard", "--layers", "1,9"],
+            "1 to 4",
+        ),
+        (&tune, &["--max-error", "0"], "--max-error"),
+        (&tune, &["--max-ms", "NaN"], "--max-ms"),
+        (&tune, &[], "required"),
+        (&tune, &["--max-ms", "1", "--splits", "0"], "1 to 16"),
+        (
+            &["study", "figure", "yang09-fig99"],
+            &[],
+            "there is no figure",
+        ),
+        (
+            &["study", "figure", "yang09-fig9", "no.json"],
+            &[],
+            "leave out the shots",
+        ),
+        (&["study", "figure", "--quick"], &[], "required"),
+        (&["study", "figure", "--repeat", "2"], &[], "required"),
+        (&["study", "stability"], &["--case", "no such"], "no case"),
+        (&["study", "stability"], &["-o", "a.json"], "another format"),
+        (&["study", "merge", "part"], &[], "required"),
+        (&["calibrate"], &["--seconds", "0"], "1..=86400"),
+    ] {
+        folder.refuses_usage(&[command, more].concat(), &[word]);
+    }
 }
 
 #[test]
@@ -177,13 +258,9 @@ fn outputs_that_cannot_be_written() {
         &["reference", "shot.json", "-o", "no/a.exr"],
         &["does not exist"],
     );
-    folder.refuses(
+    folder.refuses_usage(
         &["render", "shot.json"],
         &["nothing to write", "--visibility"],
-    );
-    folder.refuses(
-        &["render", "shot.json", "-o", "a", "--stats", "a"],
-        &["a is named twice"],
     );
 }
 
@@ -211,7 +288,6 @@ fn a_folder_that_may_not_be_written() {
 fn comparisons_that_make_no_sense() {
     let folder = Folder::new();
     folder.refuses(&["compare", "a.exr", "b.exr"], &["a.exr", "No such file"]);
-    folder.refuses(&["compare", "a.png", "b.exr"], &["cannot be compared"]);
     folder.write("a.exr", "no image");
     folder.refuses(
         &["compare", "a.exr", "a.exr", "--heatmap", "h.png"],

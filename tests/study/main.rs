@@ -1,5 +1,8 @@
 //! Studies: what they measure, that they go on where they were, that parts make a whole, and the page they end in.
 
+#[path = "../command_line/program.rs"]
+#[allow(dead_code)] // The command line's own tests use the rest.
+mod command;
 mod figure;
 mod made_up;
 mod page;
@@ -9,11 +12,13 @@ mod stability;
 #[path = "../support/gpu.rs"]
 mod support;
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use halfshade::Error;
 use halfshade::cpu::reference::ReferenceOptions;
+use halfshade::image::Plane;
 use halfshade::render::DEFAULT_COSTS;
 use halfshade::shot::{Overrides, Settings, Technique};
 use halfshade::study::{Bench, Folder, Outcome, Protocol, Subject, front};
@@ -106,6 +111,51 @@ fn a_group_is_measured_in_turns_and_survives_what_fails() {
                 < runs[2].0.measured().map(|m| m.errors.flip)
         );
     });
+}
+
+/// A first frame may have the driver's compiling in it, however little time a candidate has.
+#[test]
+fn a_time_is_that_of_a_frame_after_the_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let subject = subject(folder.path());
+    let candidates = [settings(Technique::Hard), settings(Technique::Pcss)];
+    with_gpu(|gpu| {
+        let interrupted = AtomicBool::new(false);
+        let protocol = Protocol {
+            seconds: 1e-9,
+            counters: false,
+            flicker_frames: 0,
+            ..PROTOCOL
+        };
+        let frames = RefCell::new(Vec::new());
+        let tick = |label: &str| frames.borrow_mut().push(label.to_owned());
+        let bench = Bench::new(gpu, protocol, &interrupted);
+        let runs = bench.measure(&subject, &candidates, &tick);
+        for (run, _) in runs.expect("it is measured") {
+            let measured = run.measured().expect("it is measured");
+            assert_eq!((measured.frames, measured.warm), (1, true));
+            assert!(measured.shadow_ms.median > 0.0);
+            let rendered = frames.borrow();
+            let own = rendered.iter().filter(|label| **label == run.label);
+            assert_eq!(own.count(), 2, "one to warm up and one that is timed");
+        }
+    });
+}
+
+#[test]
+fn the_noise_of_a_truth_is_its_standard_error_in_shadow() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut subject = subject(folder.path());
+    let noise = subject.noise();
+    assert!(noise > 0.0 && noise < 0.05, "{noise}");
+    // Four pixels count by hand: one lit, one that faces a part of the light, one without a surface, one in shadow.
+    let plane = |data: [f32; 4]| Plane::new(2, 2, data.to_vec()).expect("a plane");
+    subject.visibility = plane([1.0, 0.5, f32::NAN, 0.5]);
+    subject.facing = plane([1.0, 0.5, f32::NAN, 1.0]);
+    subject.standard_error = plane([0.5, 0.5, f32::NAN, 0.25]);
+    assert_eq!(subject.noise(), 0.25);
+    subject.visibility.data[3] = 1.0;
+    assert_eq!(subject.noise(), 0.0);
 }
 
 #[test]

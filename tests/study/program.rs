@@ -9,6 +9,8 @@ use std::time::SystemTime;
 use halfshade::shot::Technique;
 use halfshade::study::usual_settings;
 
+use super::command::{at_home, program};
+
 const PROGRAM: &str = env!("CARGO_BIN_EXE_halfshade");
 
 fn plate() -> String {
@@ -26,7 +28,7 @@ fn small(folder: &Path) -> Vec<String> {
 }
 
 fn study(arguments: &[&str], more: &[String]) -> Output {
-    Command::new(PROGRAM)
+    program()
         .arg("study")
         .args(arguments)
         .args(more)
@@ -96,7 +98,7 @@ fn it_goes_on_where_it_was_and_parts_make_the_whole() {
 #[test]
 fn the_batch_script_runs_one_part() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = Command::new("bash")
+    let output = at_home(&mut Command::new("bash"))
         .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tools/study.sbatch"))
         .arg(folder.path().join("study"))
         .arg(plate())
@@ -125,11 +127,7 @@ fn tuning_prints_a_command_or_says_how_near_it_comes() {
         .find_map(|line| line.strip_prefix("use: halfshade "));
     let words: Vec<&str> = command.expect("a command").split(' ').collect();
     let picture = folder.path().join("picture.png");
-    let rendered = Command::new(PROGRAM)
-        .args(words)
-        .arg("-o")
-        .arg(&picture)
-        .output();
+    let rendered = program().args(words).arg("-o").arg(&picture).output();
     let rendered = rendered.expect("the program runs");
     assert!(rendered.status.success(), "{}", said(&rendered));
     assert!(picture.exists());
@@ -144,6 +142,15 @@ fn tuning_prints_a_command_or_says_how_near_it_comes() {
         "{}",
         said(&never)
     );
+    for said_before in [
+        "the truth's own noise with 16 rays a pixel",
+        "it is traced with 65536",
+        "with 65536 rays a pixel",
+        "that error cannot be told",
+    ] {
+        assert!(said(&never).contains(said_before), "{}", said(&never));
+    }
+    assert!(!said(&found).contains("noise"), "{}", said(&found));
     let fast = study(&["tune", &file, "--max-ms", "1e5"], &small(folder.path()));
     assert!(fast.status.success(), "{}", said(&fast));
 }
@@ -153,25 +160,35 @@ fn wrong_use_is_refused_in_a_sentence() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("study").display().to_string();
     let file = plate();
-    for (arguments, sentence) in [
-        (vec!["pareto", &file, "-o", &out, "--shard", "3/3"], "I/N"),
+    for (arguments, sentence, code) in [
+        (
+            vec!["pareto", &file, "-o", &out, "--shard", "3/3"],
+            "I/N",
+            2,
+        ),
         (
             vec!["pareto", &file, "-o", &out, "--techniques", "raytracing"],
             "choose one of",
+            2,
         ),
         (
             vec!["pareto", &file, "-o", &out, "--maps", "5"],
             "16 to 8192",
+            2,
         ),
-        (vec!["pareto", "nothing.json", "-o", &out], "nothing.json"),
-        (vec!["pareto", &file, "-o", &file], "plate.json"),
-        (vec!["merge", &out, "-o", &out], "no run is finished"),
-        (vec!["tune", &file], "--max-error"),
-        (vec!["tune", &file, "--max-ms", "-1"], "--max-ms"),
+        (
+            vec!["pareto", "nothing.json", "-o", &out],
+            "nothing.json",
+            1,
+        ),
+        (vec!["pareto", &file, "-o", &file], "plate.json", 1),
+        (vec!["merge", &out, "-o", &out], "no run is finished", 1),
+        (vec!["tune", &file], "--max-error", 2),
+        (vec!["tune", &file, "--max-ms", "-1"], "--max-ms", 2),
     ] {
         let output = study(&arguments, &[]);
         let text = said(&output);
-        assert!(!output.status.success(), "{arguments:?}");
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert!(text.contains(sentence), "{arguments:?}: {text}");
     }
 }
@@ -182,7 +199,7 @@ fn the_program_takes_the_flags_of_all_settings() {
         .iter()
         .flat_map(|&technique| usual_settings(technique))
     {
-        let output = Command::new(PROGRAM)
+        let output = program()
             .args(["plan", &plate()])
             .args(settings.flags())
             .output()

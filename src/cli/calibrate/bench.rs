@@ -110,7 +110,10 @@ impl<'a> Bench<'a> {
             })
         };
         let probe = at(SIZE_PROBE)?;
-        let ms = self.frame_ms(&mut self.renderer(&probe, &pixelwise)?)?;
+        let mut renderer = self.renderer(&probe, &pixelwise)?;
+        // The driver may compile in the first frame.
+        self.frame_ms(&mut renderer)?;
+        let ms = self.frame_ms(&mut renderer)?;
         let expected = |size: u32| ms * f64::from(size / SIZE_PROBE).powi(2);
         match quick {
             _ if expected(SIZE) > FRAME_MS_MAX && !self.shots.is_empty() => Ok(None),
@@ -200,6 +203,12 @@ impl<'a> Bench<'a> {
     /// Whether no more than `share` [0, 1] of the time is spent.
     pub fn has_time(&self, share: f64) -> bool {
         self.start.elapsed() < self.budget.mul_f64(share)
+    }
+
+    /// The files that the shots were read from.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let files = self.shots.iter().flat_map(|shot| &shot.scene.files);
+        files.cloned().collect()
     }
 
     /// What is measured, a line.

@@ -8,7 +8,7 @@ use halfshade::study::figure::{Experiment, Lab, NamedShot, Report, Scale, Trials
 use halfshade::{Error, Result};
 
 use super::super::shot_args::DeviceArgs;
-use super::super::{on_interrupt, print, print_notes, progress};
+use super::super::{REPEAT, on_interrupt, outputs, print, print_notes, progress};
 use super::sweep_args::truths_folder;
 
 /// Repeats a figure or table of a publication as near as can be, and says whether its claim is found here.
@@ -28,23 +28,32 @@ pub struct Args {
     #[arg(short, long, value_name = "FOLDER", requires = "name")]
     output: Option<PathBuf>,
     /// Small and few, in seconds, to see that it works
-    #[arg(long, conflicts_with = "paper")]
+    #[arg(long, conflicts_with = "paper", requires = "name")]
     quick: bool,
     /// The paper's sizes where they are known: for a GPU
-    #[arg(long)]
+    #[arg(long, requires = "name")]
     paper: bool,
     /// Timed frames of each candidate, 1 to 10000, after one to warm up [default: the figure's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10000))]
+    #[arg(long, value_name = "N", requires = "name", value_parser = clap::value_parser!(u32).range(REPEAT))]
     repeat: Option<u32>,
     /// Folder of traced truths, by what they show [default: in the user's cache folder]
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", requires = "name")]
     truths: Option<PathBuf>,
     #[command(flatten)]
     device: DeviceArgs,
 }
 
 /// # Errors
-/// There is no such figure, a shot cannot be read, a file cannot be written, the device is lost, or Ctrl-C.
+/// There is no such figure, or it takes no shots.
+pub fn check(args: &Args) -> Result<()> {
+    match &args.name {
+        Some(name) => Experiment::find(name)?.check_shots(args.shots.len()),
+        None => Ok(()),
+    }
+}
+
+/// # Errors
+/// A shot cannot be read, a file cannot be written, the device is lost, or Ctrl-C.
 pub fn run(args: &Args) -> Result<()> {
     let Some(name) = &args.name else {
         return print(&list());
@@ -59,7 +68,15 @@ pub fn run(args: &Args) -> Result<()> {
         .iter()
         .map(|file| named_shot(file))
         .collect::<Result<_>>()?;
-    let trials = Experiment::find(name)?.trials(scale, &shots)?;
+    let experiment = Experiment::find(name)?;
+    if let Some(folder) = &args.output {
+        let written = experiment.files(folder);
+        for named in &shots {
+            let read = &named.shot.scene.files;
+            outputs::check_read(written.iter().map(PathBuf::as_path), read)?;
+        }
+    }
+    let trials = experiment.trials(scale, &shots)?;
     let report = measure(args, &trials)?;
     if let Some(folder) = &args.output {
         report.write(folder)?;

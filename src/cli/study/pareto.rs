@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use halfshade::gpu::Gpu;
 use halfshade::shot::Settings;
@@ -9,8 +10,9 @@ use halfshade::study::{Bench, Folder, Machine, Shard, Subject, front, key};
 use halfshade::{Error, Result};
 use indicatif::ProgressBar;
 
+use super::super::given::Given;
 use super::super::shot_args::DeviceArgs;
-use super::super::{print, progress};
+use super::super::{outputs, print, print_note, progress};
 use super::sweep_args::{ProtocolArgs, Setting, SweepArgs};
 
 /// Measures techniques and settings on shots: error against ray-traced truth, GPU time, memory.
@@ -46,10 +48,27 @@ pub struct Args {
 }
 
 /// # Errors
+/// A flag's value is out of its range.
+pub fn check(args: &Args) -> Result<()> {
+    args.sweep.check()?;
+    args.protocol.check()
+}
+
+/// # Errors
 /// A shot cannot be read, the folder cannot be written, the device is lost, or Ctrl-C; finished runs stay.
-pub fn run(args: &Args) -> Result<()> {
+pub fn run(args: &Args, given: &Given) -> Result<()> {
     let folder = Folder::open(&args.output)?;
-    if !args.report_only {
+    check_apart(&folder, &args.shots)?;
+    if args.report_only {
+        let idle = given
+            .flags()
+            .filter(|flag| !["output", "report-only"].contains(flag));
+        idle.for_each(|flag| {
+            print_note(&format!(
+                "--{flag} is ignored, for --report-only measures nothing."
+            ));
+        });
+    } else {
         args.device
             .with_device(|gpu| measure(args, gpu, &folder))
             .map_err(|error| match error {
@@ -64,17 +83,20 @@ pub fn run(args: &Args) -> Result<()> {
     report(&folder)
 }
 
+/// Refuses a folder that holds one of the files that are read where it writes its own.
+fn check_apart(folder: &Folder, read: &[PathBuf]) -> Result<()> {
+    let written = folder.files()?;
+    outputs::check_read(written.iter().map(PathBuf::as_path), read)
+}
+
 fn measure(args: &Args, gpu: &Arc<Gpu>, folder: &Folder) -> Result<()> {
     let setting = Setting::new(gpu)?;
-    let all = args.sweep.settings(&setting.calibration)?;
-    let protocol = (args.protocol).protocol(&setting.calibration, args.counters, args.flicker)?;
+    let all = args.sweep.settings(&setting.calibration);
+    let protocol = (args.protocol).protocol(&setting.calibration, args.counters, args.flicker);
     let bench = Bench::new(gpu, protocol, &setting.interrupted);
     let machine = Machine::of(gpu);
     let frames = u64::from(args.protocol.repeat) + 1;
-    let subjects = args.shots.iter();
-    let subjects: Vec<Subject> = subjects
-        .map(|file| args.protocol.subject(file, &setting.interrupted))
-        .collect::<Result<_>>()?;
+    let subjects = subjects(args, folder, &setting.interrupted)?;
     let bar = progress::bar("measuring", (subjects.len() * all.len()) as u64 * frames);
     for (number, subject) in subjects.iter().enumerate() {
         let own = all.iter().enumerate().filter(|(index, settings)| {
@@ -89,6 +111,21 @@ fn measure(args: &Args, gpu: &Arc<Gpu>, folder: &Folder) -> Result<()> {
     }
     bar.finish_and_clear();
     Ok(())
+}
+
+/// The shots with their truths; all are read before the first is traced.
+fn subjects(args: &Args, folder: &Folder, interrupted: &AtomicBool) -> Result<Vec<Subject>> {
+    let mut shots = Vec::new();
+    for file in &args.shots {
+        let shot = args.protocol.load(file)?;
+        check_apart(folder, &shot.scene.files)?;
+        shots.push((file, shot));
+    }
+    let samples = args.protocol.samples;
+    let traced = shots
+        .into_iter()
+        .map(|(file, shot)| args.protocol.subject(file, shot, samples, interrupted));
+    traced.collect()
 }
 
 fn measure_group(

@@ -7,9 +7,10 @@ use std::sync::atomic::Ordering;
 use halfshade::gpu::Gpu;
 use halfshade::image::{check_writable, write_atomically};
 use halfshade::shot::{Settings, Technique};
-use halfshade::study::stability::{Finding, cases, csv, examine, summary, truth};
+use halfshade::study::stability::{Case, Finding, cases, csv, examine, summary, truth};
 use halfshade::{Error, Result};
 
+use super::super::outputs::{self, Format, Output};
 use super::super::shot_args::DeviceArgs;
 use super::super::{on_interrupt, print, progress};
 
@@ -42,7 +43,32 @@ pub struct Args {
 const REFERENCE_MAPS: u32 = 64;
 
 /// # Errors
-/// No case has that name, the device is lost, the file cannot be written, or Ctrl-C.
+/// No case has that name, or the table is not to be written where it is said.
+pub fn check(args: &Args) -> Result<()> {
+    let table = args.output.iter().map(|path| Output {
+        flag: "-o",
+        path,
+        format: Format::Csv,
+    });
+    outputs::check(&table.collect::<Vec<_>>(), &[])?;
+    match chosen(args).is_empty() {
+        true => Err(Error::Invalid(
+            "no case has that in its name or family".into(),
+        )),
+        false => Ok(()),
+    }
+}
+
+fn chosen(args: &Args) -> Vec<Case> {
+    let mut cases = cases(args.large);
+    if let Some(text) = &args.case {
+        cases.retain(|case| case.name.contains(text) || case.family.contains(text));
+    }
+    cases
+}
+
+/// # Errors
+/// The device is lost, the file cannot be written, or Ctrl-C.
 pub fn run(args: &Args) -> Result<()> {
     if let Some(file) = &args.output {
         check_writable(file)?;
@@ -62,15 +88,7 @@ fn save(args: &Args, findings: &[Finding]) -> Result<()> {
 
 fn measure(args: &Args, gpu: &Arc<Gpu>) -> Result<Vec<Finding>> {
     let interrupted = on_interrupt()?;
-    let mut cases = cases(args.large);
-    if let Some(text) = &args.case {
-        cases.retain(|case| case.name.contains(text) || case.family.contains(text));
-    }
-    if cases.is_empty() {
-        return Err(Error::Invalid(
-            "no case has that in its name or family".into(),
-        ));
-    }
+    let cases = chosen(args);
     let techniques = match args.techniques.is_empty() {
         true => Technique::ALL,
         false => &args.techniques,

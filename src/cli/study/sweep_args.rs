@@ -6,13 +6,15 @@ use std::sync::atomic::AtomicBool;
 
 use halfshade::cpu::reference::ReferenceOptions;
 use halfshade::gpu::Gpu;
-use halfshade::shot::{Overrides, Settings, Technique};
+use halfshade::shot::{Overrides, Settings, Shot, Technique};
 use halfshade::study::{Protocol, Subject, Sweep};
 use halfshade::{Error, Result};
 
 use super::super::calibration::Calibration;
 use super::super::shot_args::parse_packet;
-use super::super::{parse_size, print_notes, progress, project_folders};
+use super::super::{
+    REPEAT, SAMPLES, parse_size, print_note, print_notes, progress, project_folders,
+};
 
 /// What to try. Values are separated by commas; a knob that a technique does not read multiplies nothing.
 #[derive(Debug, clap::Args)]
@@ -52,12 +54,48 @@ pub struct SweepArgs {
 }
 
 impl SweepArgs {
-    /// All settings to try; packets, mapping and leaf rule as calibrated where no flag names them.
-    ///
     /// # Errors
     /// A value is out of its range.
-    pub fn settings(&self, calibration: &Calibration) -> Result<Vec<Settings>> {
-        let sweep = Sweep {
+    pub fn check(&self) -> Result<()> {
+        self.sweep(&Calibration::default()).validate()
+    }
+
+    /// All settings to try; packets, mapping and leaf rule as calibrated where no flag names them. A flag that none of
+    /// them reads is noted on stderr.
+    pub fn settings(&self, calibration: &Calibration) -> Vec<Settings> {
+        let mut all = self.sweep(calibration).settings();
+        for settings in &mut all {
+            settings.leaf = calibration.leaf;
+            settings.mapping = calibration.mapping;
+        }
+        for (flag, knob, is_given) in [
+            ("splits", "split", !self.splits.is_empty()),
+            ("packets", "packet", !self.packets.is_empty()),
+            ("layers", "layers", !self.layers.is_empty()),
+            (
+                "light-samples",
+                "light-samples",
+                !self.light_samples.is_empty(),
+            ),
+            (
+                "filter-samples",
+                "filter-samples",
+                !self.filter_samples.is_empty(),
+            ),
+            ("reference-maps", "maps", !self.reference_maps.is_empty()),
+        ] {
+            let is_read = |settings: &Settings| settings.reads(knob, false) == Some(true);
+            if is_given && !all.iter().any(is_read) {
+                print_note(&format!(
+                    "--{flag} is ignored, for none of the techniques reads it."
+                ));
+            }
+        }
+        all
+    }
+
+    fn sweep(&self, calibration: &Calibration) -> Sweep {
+        Sweep {
             techniques: self.techniques.clone(),
             splits: self.splits.clone(),
             maps: self.maps.clone(),
@@ -69,15 +107,9 @@ impl SweepArgs {
             light_samples: self.light_samples.clone(),
             filter_samples: self.filter_samples.clone(),
             reference_maps: self.reference_maps.clone(),
-            biases: self.biases.clone(),
-        };
-        let mut all = sweep.settings();
-        for settings in &mut all {
-            settings.leaf = calibration.leaf;
-            settings.mapping = calibration.mapping;
-            settings.validate()?;
+            // Adding 0 takes the sign from −0.
+            biases: self.biases.iter().map(|bias| bias + 0.0).collect(),
         }
-        Ok(all)
     }
 }
 
@@ -88,12 +120,12 @@ pub struct ProtocolArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Rays per pixel of the truth, 16 to 65536
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=65536))]
-    samples: u32,
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(SAMPLES))]
+    pub samples: u32,
     /// Timed frames of each candidate, 1 to 10000, after one to warm up; candidates take turns
-    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(REPEAT))]
     pub repeat: u32,
-    /// Give a candidate no further frame after this wall time
+    /// Give a candidate no further frame after this wall time, but one to warm up and a timed one in any case
     #[arg(long, value_name = "S", default_value_t = 60.0)]
     seconds: f64,
     /// Folder of traced truths, by what they show [default: in the user's cache folder]
@@ -104,45 +136,64 @@ pub struct ProtocolArgs {
 impl ProtocolArgs {
     /// # Errors
     /// A value is out of its range.
+    pub fn check(&self) -> Result<()> {
+        match self.seconds > 0.0 {
+            true => Ok(()),
+            false => Err(Error::Invalid("--seconds is more than 0".into())),
+        }
+    }
+
     pub fn protocol(
         &self,
         calibration: &Calibration,
         counters: bool,
         flicker_frames: u32,
-    ) -> Result<Protocol> {
-        if self.seconds.is_nan() || self.seconds <= 0.0 {
-            return Err(Error::Invalid("--seconds is more than 0".into()));
-        }
-        Ok(Protocol {
+    ) -> Protocol {
+        Protocol {
             repeat: self.repeat,
             seconds: self.seconds,
             counters,
             flicker_frames,
             costs: calibration.costs(),
-        })
+        }
     }
 
-    /// A shot with its truth, traced under a progress bar where it is not known yet.
+    /// A shot, with its notes on stderr.
     ///
     /// # Errors
-    /// It cannot be read or traced, or was interrupted.
-    pub fn subject(&self, file: &Path, interrupted: &AtomicBool) -> Result<Subject> {
+    /// It cannot be read.
+    pub fn load(&self, file: &Path) -> Result<Shot> {
         let overrides = Overrides {
             size: self.size,
             ..Overrides::default()
         };
+        let shot = Shot::load(file, &overrides)?;
+        print_notes(&shot);
+        Ok(shot)
+    }
+
+    /// A shot with its truth by `samples` rays per pixel, traced under a progress bar where it is not known yet.
+    ///
+    /// # Errors
+    /// It cannot be traced, or was interrupted.
+    pub fn subject(
+        &self,
+        file: &Path,
+        shot: Shot,
+        samples: u32,
+        interrupted: &AtomicBool,
+    ) -> Result<Subject> {
         let options = ReferenceOptions {
-            samples: self.samples,
+            samples,
             ..ReferenceOptions::default()
         };
         let cache = truths_folder(self.truths.as_deref())?;
         let bar = progress::bar("tracing the truth", 1000);
         let advance = |share: f64| bar.set_position((share * 1000.0) as u64);
-        let subject = Subject::load(file, &overrides, &cache, options, &advance, interrupted);
+        let name = Subject::name_of(file);
+        let subject = Subject::of_shot(&name, file, shot, &cache, options, &advance, interrupted);
         bar.finish_and_clear();
-        let subject = subject?;
-        print_notes(&subject.shot);
-        Ok(subject)
+        subject
     }
 }
 

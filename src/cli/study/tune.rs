@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
+use halfshade::cpu::reference::SAMPLES;
 use halfshade::gpu::Gpu;
 use halfshade::shot::Settings;
 use halfshade::study::{Bench, Goal, Protocol, Run, Subject, best};
 use halfshade::{Error, Result};
 
 use super::super::shot_args::DeviceArgs;
-use super::super::{print, progress};
+use super::super::{print, print_note, progress};
 use super::sweep_args::{ProtocolArgs, Setting, SweepArgs};
 
 /// Finds the fastest settings within an error, or the least wrong within a time, and prints the command to use.
@@ -40,6 +42,14 @@ const LOOKS: u32 = 2;
 const FINALISTS: usize = 6;
 
 /// # Errors
+/// A flag's value is out of its range.
+pub fn check(args: &Args) -> Result<()> {
+    goal(args)?;
+    args.sweep.check()?;
+    args.protocol.check()
+}
+
+/// # Errors
 /// The shot cannot be read or rendered, no settings reach the goal, or Ctrl-C.
 pub fn run(args: &Args) -> Result<()> {
     let goal = goal(args)?;
@@ -64,9 +74,9 @@ fn goal(args: &Args) -> Result<Goal> {
 /// Runs of the finalists, or of all candidates if none of them reaches the goal.
 fn measure(args: &Args, gpu: &Arc<Gpu>, goal: Goal) -> Result<Vec<Run>> {
     let setting = Setting::new(gpu)?;
-    let all = args.sweep.settings(&setting.calibration)?;
-    let protocol = args.protocol.protocol(&setting.calibration, false, 0)?;
-    let subject = args.protocol.subject(&args.shot, &setting.interrupted)?;
+    let all = args.sweep.settings(&setting.calibration);
+    let protocol = args.protocol.protocol(&setting.calibration, false, 0);
+    let subject = subject(args, goal, &setting.interrupted)?;
     let look = |repeat, settings| {
         let protocol = Protocol { repeat, ..protocol };
         let bench = Bench::new(gpu, protocol, &setting.interrupted);
@@ -82,6 +92,43 @@ fn measure(args: &Args, gpu: &Arc<Gpu>, goal: Goal) -> Result<Vec<Run>> {
         return Ok(looked);
     }
     look(args.protocol.repeat, finalists)
+}
+
+/// The shot with a truth whose own noise is below the error that is asked for, if any number of rays gives that.
+fn subject(args: &Args, goal: Goal, interrupted: &AtomicBool) -> Result<Subject> {
+    let shot = args.protocol.load(&args.shot)?;
+    let mut samples = args.protocol.samples;
+    loop {
+        let file = &args.shot;
+        let subject = (args.protocol).subject(file, shot.clone(), samples, interrupted)?;
+        let noise = subject.noise();
+        let Goal::MaxError(limit) = goal else {
+            return Ok(subject);
+        };
+        if noise < limit {
+            return Ok(subject);
+        }
+        let reached = format!(
+            "the truth's own noise with {samples} rays a pixel, {noise:.1e}, reaches the error asked for"
+        );
+        if samples == *SAMPLES.end() {
+            print_note(&format!(
+                "{reached}, and there are no more; that error cannot be told."
+            ));
+            return Ok(subject);
+        }
+        samples = more_samples(samples, noise / limit);
+        print_note(&format!("{reached}; it is traced with {samples}."));
+    }
+}
+
+/// Rays per pixel that bring a noise of `excess` ≥ 1 times what is asked for to half of that, as a random walk would
+/// need them; at least twice as many as before.
+fn more_samples(samples: u32, excess: f64) -> u32 {
+    let needed = f64::from(samples) * (2.0 * excess).powi(2);
+    // Beyond u32 it is the largest of them.
+    let needed = (needed.ceil() as u32).max(samples.saturating_mul(2));
+    needed.min(*SAMPLES.end())
 }
 
 fn measure_all(
@@ -154,4 +201,18 @@ fn out_of_reach(runs: &[Run], goal: Goal) -> Error {
     Error::Invalid(format!(
         "nothing that was tried reaches {what}; the nearest is {nearest}; try other --maps, --splits or --techniques"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_rays_are_as_many_as_noise_asks_for() {
+        assert_eq!(more_samples(16, 1.0), 64);
+        assert_eq!(more_samples(1000, 2.0), 16000);
+        assert_eq!(more_samples(16, 1e6), *SAMPLES.end());
+        assert_eq!(more_samples(*SAMPLES.end() - 8, 1.0), *SAMPLES.end());
+        assert_eq!(more_samples(16, f64::INFINITY), *SAMPLES.end());
+    }
 }

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::number::decimals;
+
 /// |τ| from which on a curve counts as rising or falling, see `Curve::trend`.
 pub(super) const CLEAR: f64 = 0.6;
 
@@ -78,7 +80,7 @@ pub(super) fn number(value: f64) -> String {
     } else {
         0
     };
-    let text = format!("{value:.0$}", digits.clamp(0, 8) as usize);
+    let text = decimals(value, digits.clamp(0, 8) as usize);
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
@@ -106,7 +108,16 @@ mod tests {
 
     #[test]
     fn numbers_have_four_digits() {
-        let all = numbers([0.0123456, 12.3, 1234567.0, 0.0, 1.0, f64::NAN, 0.000001234]);
-        assert_eq!(all, "0.01235, 12.3, 1234567, 0, 1, —, 1.23e-6");
+        let all = numbers([
+            0.0123456,
+            12.3,
+            1234567.0,
+            0.0,
+            1.0,
+            f64::NAN,
+            0.000001234,
+            -0.0,
+        ]);
+        assert_eq!(all, "0.01235, 12.3, 1234567, 0, 1, —, 1.23e-6, 0");
     }
 }

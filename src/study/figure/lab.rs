@@ -21,9 +21,8 @@ use super::check::number;
 use super::report::Report;
 use super::{Experiment, Row, Scale, Trial};
 
-/// [s] The wall time after which a candidate gets no further frame. The first frame of a setting may take ten of them
-/// where a CPU driver compiles; the smallest scale has no time to judge, so every candidate gets its frame.
-const SECONDS: [f64; 3] = [600.0, 30.0, 60.0];
+/// [s] The wall time after which a candidate gets no further frame but its first timed one.
+const SECONDS: [f64; 3] = [30.0, 30.0, 60.0];
 
 /// Where and with what to measure.
 pub struct Lab<'a> {

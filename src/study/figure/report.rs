@@ -82,19 +82,6 @@ impl Report {
             Outcome::Measured(_) => None,
         };
         notes.extend(self.rows.iter().filter_map(failed));
-        let lacks = |row: &&Row| {
-            self.experiment
-                .columns
-                .iter()
-                .any(|column| (column.of)(row).is_nan())
-        };
-        let cold = |row: &&Row| row.run.measured().is_some_and(|measured| !measured.warm);
-        notes.extend(self.rows.iter().filter(cold).filter(lacks).map(|row| {
-            format!(
-                "{}, {}, {}: its first frame used up its time and may have the driver's compiling in it, so it has no time",
-                row.scene, row.series, row.x
-            )
-        }));
         if self.machine.device_kind == "cpu" {
             notes.push(format!(
                 "{} is a CPU driver: its times are no GPU's",
@@ -213,13 +200,10 @@ impl Report {
     /// Something cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
-        for (ending, text) in [
-            ("csv", self.csv()?),
-            ("json", self.json()?),
-            ("svg", curves(self.experiment, &self.rows)?),
-        ] {
-            let file = folder.join(format!("{}.{ending}", self.experiment.name));
-            write_atomically(&file, |out| out.write_all(text.as_bytes()))?;
+        let plot = curves(self.experiment, &self.rows)?;
+        let texts = [self.csv()?, self.json()?, plot];
+        for (file, text) in self.experiment.files(folder).iter().zip(texts) {
+            write_atomically(file, |out| out.write_all(text.as_bytes()))?;
         }
         Ok(())
     }

@@ -54,12 +54,12 @@ pub const TIME_ASIDE: Column = Column {
 pub const TIME_MIN: Column = Column {
     name: "shadow_ms_min",
     plotted: false,
-    of: |row| row.time(|measured| measured.shadow_ms.min),
+    of: |row| row.of(|measured| measured.shadow_ms.min),
 };
 pub const TIME_MAX: Column = Column {
     name: "shadow_ms_max",
     plotted: false,
-    of: |row| row.time(|measured| measured.shadow_ms.max),
+    of: |row| row.of(|measured| measured.shadow_ms.max),
 };
 
 impl Row {
@@ -71,27 +71,19 @@ impl Row {
         self.of(|measured| measured.errors.metrics.mae_shadow)
     }
 
-    /// A time of frames; none of a frame that has the driver's compiling in it.
-    fn time(&self, value: impl Fn(&Measured) -> f64) -> f64 {
-        self.of(|measured| match measured.warm {
-            true => value(measured),
-            false => f64::NAN,
-        })
-    }
-
     /// [ms] Of the shadow passes.
     pub fn ms(&self) -> f64 {
-        self.time(|measured| measured.shadow_ms.median)
+        self.of(|measured| measured.shadow_ms.median)
     }
 
     /// [ms] Of one pass, summed over a frame.
     pub fn pass_ms(&self, pass: &str) -> f64 {
-        self.time(|measured| measured.passes.get(pass).map_or(f64::NAN, |ms| ms.median))
+        self.of(|measured| measured.passes.get(pass).map_or(f64::NAN, |ms| ms.median))
     }
 
     /// [ms] Of the passes that integrate visibility.
     pub fn visibility_ms(&self) -> f64 {
-        self.time(|measured| measured.visibility_ms.median)
+        self.of(|measured| measured.visibility_ms.median)
     }
 
     /// What the device counted.

@@ -178,7 +178,7 @@ int main(int argc, char **argv) {
     hs_shot *shot = NULL;
     HEAD(hs_context_info, info, HS_TYPE_CONTEXT_INFO);
     HEAD(hs_scene_counts, counts, HS_TYPE_SCENE_COUNTS);
-    CHECK(argc == 2);
+    CHECK(argc == 3);
     CHECK(hs_abi_version() == HS_ABI_VERSION);
     CHECK(strlen(hs_version()) >= 5 && strcmp(hs_result_name(HS_IO), "HS_IO") == 0);
     info.flags = HS_CONTEXT_VALIDATE;
@@ -195,7 +195,7 @@ int main(int argc, char **argv) {
     OK(hs_shot_create(scene, &shot));
     hs_shot_destroy(shot);
     hs_scene_destroy(scene);
-    CHECK(hs_scene_load(context, "/nonexistent", &scene) == HS_IO);
+    CHECK(hs_scene_load(context, argv[2], &scene) == HS_IO);
     CHECK(hs_scene_load(context, "/dev/null", &scene) == HS_PARSE);
     CHECK(hs_last_error(context, NULL, 0) > 1);
     hs_context_destroy(context);
