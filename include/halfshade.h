@@ -438,13 +438,14 @@ typedef struct hs_settings {
     uint32_t percentage_closer;
     // [1, 4096] REFERENCE_MAPS.
     uint32_t maps;
-    // [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are rounded more than 32-bit floats
-    // are need more of it than the technique's usual one.
+    // [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are
+    // rounded more than 32-bit floats are need more of it than the technique's usual one.
     float bias;
     // 1 = count pixels, packets, nodes and edges, which takes time.
     uint32_t counters;
-    // 0
-    uint32_t reserved;
+    // [0, 4096] PACKET_CONTOUR with casters that the library knows beforehand: points of the light that cast hard
+    // shadows, on all of it, in place of sub-lights that an occluder is nearer to than they are wide; 0 = none.
+    uint32_t near_points;
 } hs_settings;
 
 // What a shot holds.

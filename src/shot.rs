@@ -166,7 +166,7 @@ impl Default for Settings {
             filter_samples: 32,
             percentage_closer: false,
             maps: 1024,
-            near_points: 197,
+            near_points: 160,
             bias: None,
             counters: false,
         }

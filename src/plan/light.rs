@@ -10,7 +10,7 @@ use super::views::{self, Aspect, Site};
 use crate::scene::AreaLight;
 use crate::shared::{self, FRONT_REACH, SECTOR_STEPS, View};
 use crate::shot::{Settings, Shot, Technique};
-use crate::sub_light::{Part, golden_lattice};
+use crate::sub_light::{Part, evenly_spread};
 use crate::technique::Recipe;
 
 /// Tangent up to which the front face of a point's view holds receivers: 76 degrees. Its map is fitted to casters, so that
@@ -234,7 +234,7 @@ fn reach(settings: &Settings) -> f32 {
 /// wide (`near`), its points differ too much in what they see for the middle to stand for them, however it is integrated:
 /// points with hard shadows take its place.
 fn sampled(settings: Settings, parts: Vec<Part>, near: &[bool]) -> Vec<(Settings, Vec<Part>)> {
-    let on_light: Vec<DVec2> = golden_lattice(settings.near_points).collect();
+    let on_light: Vec<DVec2> = evenly_spread(settings.near_points).collect();
     let is_near = |index: usize| near.get(index).copied().unwrap_or(false);
     let (mut whole, mut points) = (Vec::new(), Vec::new());
     for (index, part) in parts.into_iter().enumerate() {

@@ -80,12 +80,13 @@ fn room(half: f64) -> Shape {
     ])
 }
 
-/// All triangles of a scene, relative to its origin.
+/// All triangles of a scene, relative to the eye.
 struct Walls(Vec<[DVec3; 3]>);
 
 impl Walls {
-    fn of(scene: &Scene) -> Self {
-        let corners = |index| scene.corners(index).map(|corner| corner.as_dvec3());
+    fn of(shot: &Shot) -> Self {
+        let scene = &shot.scene;
+        let corners = |index| scene.corners_around(shot.origin(), index);
         Self((0..scene.triangles.len()).map(corners).collect())
     }
 
@@ -215,7 +216,7 @@ fn leaks(gpu: &Arc<Gpu>, shot: &Shot, bounded: usize) -> Leaks {
     let mut leaking: Vec<usize> = dark.iter().copied().filter(|&i| image[i] > 0.0).collect();
     leaking.sort_by(|&a, &b| image[b].total_cmp(&image[a]));
     let step = leaking.len().div_ceil(bounded.max(1)).max(1);
-    let walls = Walls::of(&shot.scene);
+    let walls = Walls::of(shot);
     let bound = |pixel: usize| {
         let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
         let (point, normal) = (vector(positions[pixel]), vector(normals[pixel]));

@@ -17,7 +17,7 @@ mod tilted;
 use std::sync::Arc;
 
 use closed_form::{Occluder, rectangle_visibility};
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3, Vec3};
 use halfshade::gpu::Gpu;
 use halfshade::plan::{Outcome, Outputs, Plan, plan};
 use halfshade::scene::{AreaLight, LightShape, Scene};
