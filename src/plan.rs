@@ -180,8 +180,8 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
     };
     for light in &shot.lights {
         let found = survey(&shot.scene, &frustum, light);
-        let radiance = views::radiance(shot, light);
-        plan.add_light(&shot.settings, &site, light, found, radiance);
+        let intensity = views::intensity(shot, light);
+        plan.add_light(&shot.settings, &site, light, found, intensity);
     }
     plan.size_map(&shot.settings, limits)?;
     let retained = retained && plan.views().count() == 1;
@@ -231,7 +231,7 @@ impl Plan {
         site: &Site,
         light: &AreaLight,
         found: Survey,
-        radiance: [f32; 3],
+        intensity: [f32; 3],
     ) {
         let outcome = match found {
             Survey {
@@ -283,7 +283,7 @@ impl Plan {
         let view_range = view_first..view_first + views.len() as u32;
         self.lights.push(LightPlan {
             name,
-            light: views::whole_light(site.origin, light, radiance, weight_sum, view_range),
+            light: views::whole_light(site.origin, light, intensity, weight_sum, view_range),
             outcome,
             views,
             part_count: parts.len(),

@@ -80,12 +80,17 @@ macro_rules! shared {
 }
 
 macro_rules! shared_constants {
-    ($($(#[$doc:meta])* $name:ident: $ty:ident = $value:expr;)*) => {
-        $($(#[$doc])* pub const $name: $ty = $value;)*
+    ($($(#[$doc:meta])* $name:ident: $ty:ident $([$count:literal])? = $value:expr;)*) => {
+        $($(#[$doc])* pub const $name: field_type!($ty $($count)?) = $value;)*
 
         /// Name, GLSL type and value of every shared constant, for the GLSL generator.
         pub fn constants() -> Vec<(&'static str, &'static str, String)> {
-            vec![$((stringify!($name), stringify!($ty), format!("{:?}", $value)),)*]
+            let initializer = |value: String| value.replace('[', "{").replace(']', "}");
+            vec![$((
+                stringify!($name),
+                concat!(stringify!($ty), $("[", stringify!($count), "]")?),
+                initializer(format!("{:?}", $name)),
+            ),)*]
         }
     };
 }
@@ -122,6 +127,22 @@ shared_constants! {
     /// [share of d_p] Bias for the rounding of positions and depths, per unit of the coordinates'
     /// magnitude over the receiver's depth.
     BIAS_ROUNDING: float = 1e-6;
+    /// Positive nodes and weights of the quadrature of irradiance, symmetric about 0: the 16 nodes t of Gauss and
+    /// Legendre, moved towards the ends of −1 … 1 by sin κt / sin κ, κ = 0.95 π/2.
+    IRRADIANCE_NODES: vec2 [8] = [
+        [0.141745437, 0.280737516],
+        [0.409227154, 0.249552954],
+        [0.63344672, 0.196330644],
+        [0.799293659, 0.135296901],
+        [0.906031516, 0.0800573478],
+        [0.964289428, 0.0392343801],
+        [0.990079755, 0.0149609521],
+        [0.998630186, 0.00382930514],
+    ];
+    /// Coefficients of z⁰ … z⁵ of (s − atan s) / s³ with z = s² in [0, 1]: the polynomial through its values at the zeros of
+    /// Chebyshev's T₆, off by up to 4.1e-6.
+    ARCTANGENT: float [6] =
+        [0.333329017, -0.199685498, 0.138961257, -0.0922929958, 0.0448663915, -0.0105786698];
     /// Kernel of a pixel that no occluder of this view can shadow.
     KERNEL_LIT: uint = 0;
     /// Kernel of a pixel whose sub-light is hidden altogether.
@@ -193,8 +214,11 @@ shared! {
         round: uint,
         /// Sum of the weights of its views' sub-lights, summed in f32 in the order of the views.
         weight_sum: float,
-        /// Linear RGB radiance.
-        radiance: vec3,
+        /// 1 = a point without direction: it shines to all sides alike.
+        all_sides: uint,
+        /// [radiance · scene units²] Linear RGB radiance times area: the radiant intensity along `n`, which does not
+        /// end where the area does.
+        intensity: vec3,
         /// [view] Its first view and how many it has.
         view_first: uint,
         view_count: uint,

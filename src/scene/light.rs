@@ -43,6 +43,16 @@ impl AreaLight {
         self.half_size() == (0.0, 0.0)
     }
 
+    /// Whether the light is a point without direction, which shines to all sides alike. A disc of radius 0 with a
+    /// normal has one: it is the limit of small discs, and shines by the cosine.
+    pub fn is_point_without_direction(&self) -> bool {
+        let directed = match self.shape {
+            LightShape::Rect { .. } => false,
+            LightShape::Disc { normal, .. } => normal.try_normalize().is_some(),
+        };
+        self.is_point() && !directed
+    }
+
     /// [scene units²]
     pub fn area(&self) -> f64 {
         let (u, v) = self.half_size();
