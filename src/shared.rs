@@ -140,7 +140,7 @@ shared_constants! {
         [0.998630186, 0.00382930514],
     ];
     /// Coefficients of z⁰ … z⁵ of (s − atan s) / s³ with z = s² in [0, 1]: the polynomial through its values at the zeros of
-    /// Chebyshev's T₆, off by up to 4.1e-6.
+    /// Chebyshev's T₆, off by up to 4.3e-6.
     ARCTANGENT: float [6] =
         [0.333329017, -0.199685498, 0.138961257, -0.0922929958, 0.0448663915, -0.0105786698];
     /// Kernel of a pixel that no occluder of this view can shadow.

@@ -74,7 +74,7 @@ float arc_excess(float t) {
     bool obtuse = t > 1.0;
     float s = obtuse ? 1.0 / t : t;
     float z = s * s;
-    // (s − atan s) / s³, off by up to 4e-6.
+    // (s − atan s) / s³, off by up to 4.3e-6.
     float q = ARCTANGENT[5];
     for (int i = 4; i >= 0; --i) q = q * z + ARCTANGENT[i];
     float c = 1.0 / (1.0 + z);
@@ -85,7 +85,7 @@ float arc_excess(float t) {
 float irradiance_by_line(SeenLight seen, float x, float s) {
     float reach = seen.half_size.y * (seen.disc ? sqrt(max((1.0 - s) * (1.0 + s), 0.0)) : 1.0);
     float level = seen.slope.x * x + seen.slope.z * seen.distance;
-    float horizon = -level / max(seen.slope.y, SHORTEST);
+    float horizon = -level / max(seen.slope.y, 1e-9);
     float y0 = max(seen.center.y - reach, horizon);
     float y1 = seen.center.y + reach;
     float extent = min(2.0 * reach, y1 - horizon);
@@ -179,10 +179,10 @@ float irradiance(Light light, vec3 position, vec3 normal) {
     }
     vec3 far = abs(way);
     float scale = max(far.x, max(far.y, far.z)) + light.half_size.x + light.half_size.y;
-    float inverse_scale = 1.0 / max(scale, 1e-30);
+    float inverse_scale = 1.0 / max(scale, 1e-18);
     SeenLight seen = seen_light(light, way, normal, inverse_scale);
     if (!(seen.distance > 0.0)) return 0.0;
     seen.distance = max(seen.distance, SHORTEST);
     float area = (seen.disc ? PI : 4.0) * seen.half_size.x * seen.half_size.y;
-    return irradiance_by_seen(seen) / area * inverse_scale * inverse_scale;
+    return min(irradiance_by_seen(seen) / area * inverse_scale * inverse_scale, 1e38);
 }
