@@ -130,19 +130,19 @@ shared_constants! {
     /// Positive nodes and weights of the quadrature of irradiance, symmetric about 0: the 16 nodes t of Gauss and
     /// Legendre, moved towards the ends of −1 … 1 by sin κt / sin κ, κ = 0.95 π/2.
     IRRADIANCE_NODES: vec2 [8] = [
-        [0.141745437, 0.280737516],
-        [0.409227154, 0.249552954],
-        [0.63344672, 0.196330644],
-        [0.799293659, 0.135296901],
-        [0.906031516, 0.0800573478],
-        [0.964289428, 0.0392343801],
-        [0.990079755, 0.0149609521],
-        [0.998630186, 0.00382930514],
+        [0.141_745_43, 0.280_737_52],
+        [0.409_227_16, 0.249_552_95],
+        [0.633_446_7, 0.196_330_64],
+        [0.799_293_64, 0.135_296_9],
+        [0.906_031_5, 0.080_057_345],
+        [0.964_289_4, 0.039_234_38],
+        [0.990_079_76, 0.014_960_952],
+        [0.998_630_17, 0.003_829_305],
     ];
     /// Coefficients of z⁰ … z⁵ of (s − atan s) / s³ with z = s² in [0, 1]: the polynomial through its values at the zeros of
     /// Chebyshev's T₆, off by up to 4.3e-6.
     ARCTANGENT: float [6] =
-        [0.333329017, -0.199685498, 0.138961257, -0.0922929958, 0.0448663915, -0.0105786698];
+        [0.333_329_02, -0.199_685_5, 0.138_961_26, -0.092_292_994, 0.044_866_39, -0.010_578_67];
     /// Kernel of a pixel that no occluder of this view can shadow.
     KERNEL_LIT: uint = 0;
     /// Kernel of a pixel whose sub-light is hidden altogether.

@@ -14,9 +14,9 @@
 // cancels, and small lights end in area · cos · cos / r². Only basic arithmetic and square roots: their precision is
 // stated by Vulkan, that of trigonometric functions is too coarse.
 //
-// Relative error: below 1e-3 for half sizes from 0 to 100 times the distance from the light's centre, where the cosine at the
-// light and the height of the light's highest point over the sum of distance and half sizes are above 1e-3. With cosines
-// below 1e-4, positions and normals in 32 bits decide the result. Finite everywhere.
+// Relative error: below 1e-3 for half sizes from 0 to 100 times the distance from the light's centre, as long as two cosines
+// are above 1e-3: the one at the light, of the way to its centre, and the height of the light's highest point over the sum of
+// distance and half sizes. Where one is below 1e-4, the rounding of positions and normals decides. Finite everywhere.
 
 // [scale] Shorter lengths are taken for it: the limit of a point is reached within a share of 1e-18.
 const float SHORTEST = 1e-9;
@@ -69,7 +69,7 @@ SeenLight seen_light(Light light, vec3 to_center, vec3 normal, float inverse_sca
     return seen;
 }
 
-// θ − sin θ for θ in [0, π], t = tan(θ/2): what the arc has over its chord's sine.
+// θ − sin θ for θ in [0, π], t = tan(θ/2): twice the area between an arc and its chord.
 float arc_excess(float t) {
     bool obtuse = t > 1.0;
     float s = obtuse ? 1.0 / t : t;

@@ -44,7 +44,7 @@ impl AreaLight {
     }
 
     /// Whether the light is a point without direction, which shines to all sides alike. A disc of radius 0 with a
-    /// normal has one: it is the limit of small discs, and shines by the cosine.
+    /// normal has a direction: it is the limit of small discs, and shines by the cosine.
     pub fn is_point_without_direction(&self) -> bool {
         let directed = match self.shape {
             LightShape::Rect { .. } => false,

@@ -101,8 +101,7 @@ fn encoded(radiance: f64) -> f64 {
         }
 }
 
-/// The levels by which the picture differs from the twin's at most, and the range of the twin's irradiance, [π, radiance of
-/// white].
+/// By how many levels of 255 the picture differs from the twin's at most, and the range of white's unshadowed radiance.
 fn difference_from_twin(picture: &Picture) -> (f64, [f64; 2]) {
     let ambient = f64::from(DEFAULT_EXPOSURE.ambient);
     let mut largest: f64 = 0.0;
