@@ -23,7 +23,7 @@ bool faces_light(Light light, vec3 position, vec3 normal) {
     precise vec3 magnitude = abs(to_point) + abs(light.center);
     precise float rounding = HORIZON_ROUNDING * (magnitude.x + magnitude.y + magnitude.z);
     precise float height = reach - dot_exact(normal, to_point);
-    return dot_exact(to_point, light.n) > rounding && height > rounding;
+    return (light.all_sides != 0u || dot_exact(to_point, light.n) > rounding) && height > rounding;
 }
 
 void main() {

@@ -364,7 +364,8 @@ typedef struct hs_camera {
     uint32_t height;
 } hs_camera;
 
-// A flat, one-sided light of constant radiance. Without extent it is a point and its shadow is hard.
+// A flat, one-sided light of constant radiance. Without extent it is a point and its shadow is hard; a disc with a normal is
+// the limit of small discs then, and other points shine to all sides alike.
 typedef struct hs_light {
     // HS_TYPE_LIGHT
     uint32_t type;
@@ -378,13 +379,14 @@ typedef struct hs_light {
     double u[3];
     // [scene units] Half-axis of a rectangle, perpendicular to `u`; it shines along u x v.
     double v[3];
-    // Along which a disc shines; any length but 0.
+    // Along which a disc shines; any length but 0, unless the radius is 0.
     double normal[3];
     // [scene units] Of a disc.
     double radius;
     // [0, ...) Linear RGB.
     float color[3];
-    // [radiance] Below 0: such that a white surface at the camera's target that faces the light has radiance 1.
+    // [radiance] Of a light without extent: radiant intensity. Below 0: such that a white surface at the camera's target
+    // that faces the light has radiance 1.
     float intensity;
     // HS_LIGHT_...
     uint32_t shape;

@@ -10,6 +10,7 @@ pub(crate) mod bvh;
 pub mod classify;
 pub mod contour;
 pub mod depth;
+pub mod irradiance;
 pub mod kernels;
 mod light;
 pub mod mssm;

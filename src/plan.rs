@@ -20,7 +20,7 @@ use crate::technique::{self, Recipe};
 use camera::Frustum;
 use light::Placed;
 use memory::Inventory;
-use survey::survey;
+use survey::{Survey, survey};
 
 pub use host::{HostFrame, plan_for_host};
 pub use light::{LightPlan, Outcome, Variant, ViewPlan, ViewSet};
@@ -117,7 +117,11 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
     };
     for light in &shot.lights {
         let parts = technique::parts(light, &shot.settings.of_light(light));
-        let found = survey(shot, &frustum, light, &parts);
+        let sides = light.sides();
+        let found = sides
+            .iter()
+            .map(|side| survey(shot, &frustum, side, &parts));
+        let found: Vec<Survey> = found.collect();
         plan.add_light(&shot.settings, &Placed::of_shot(shot, light), parts, &found);
     }
     plan.size_map(&shot.settings, limits)?;

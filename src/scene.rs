@@ -105,12 +105,13 @@ pub struct Camera {
     pub near: Option<f64>,
 }
 
-/// What an area light looks like. A light with no extent at all is a point: its shadow is hard.
+/// What an area light looks like. A light with no extent at all is a point: its shadow is hard. A disc with a normal is the
+/// limit of small discs then; other points have no direction and shine to all sides alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LightShape {
     /// [scene units] Half-axis vectors, perpendicular to each other; the light shines along u × v.
     Rect { u: DVec3, v: DVec3 },
-    /// [scene units] The light shines along `normal` (any length but 0).
+    /// [scene units] The light shines along `normal` (any length but 0, unless the radius is 0).
     Disc { normal: DVec3, radius: f64 },
 }
 
@@ -123,8 +124,8 @@ pub struct AreaLight {
     pub shape: LightShape,
     /// Linear RGB, ≥ 0.
     pub color: Vec3,
-    /// [radiance] None: such that a white surface at the camera's target that faces the light
-    /// has radiance 1.
+    /// [radiance] Of a light without extent: radiant intensity. None: such that a white surface at the camera's target
+    /// that faces the light has radiance 1.
     pub intensity: Option<f32>,
 }
 

@@ -80,12 +80,17 @@ macro_rules! shared {
 }
 
 macro_rules! shared_constants {
-    ($($(#[$doc:meta])* $name:ident: $ty:ident = $value:expr;)*) => {
-        $($(#[$doc])* pub const $name: $ty = $value;)*
+    ($($(#[$doc:meta])* $name:ident: $ty:ident $([$count:literal])? = $value:expr;)*) => {
+        $($(#[$doc])* pub const $name: field_type!($ty $($count)?) = $value;)*
 
         /// Name, GLSL type and value of every shared constant, for the GLSL generator.
         pub fn constants() -> Vec<(&'static str, &'static str, String)> {
-            vec![$((stringify!($name), stringify!($ty), format!("{:?}", $value)),)*]
+            let initializer = |value: String| value.replace('[', "{").replace(']', "}");
+            vec![$((
+                stringify!($name),
+                concat!(stringify!($ty), $("[", stringify!($count), "]")?),
+                initializer(format!("{:?}", $name)),
+            ),)*]
         }
     };
 }
@@ -126,6 +131,22 @@ shared_constants! {
     /// the coordinates' magnitude: 8 units in the last place. What is no higher counts as in the plane, so that a surface
     /// whose plane runs along the light's border is decided the same in all its pixels.
     HORIZON_ROUNDING: float = 4.76837158203125e-7;
+    /// Positive nodes and weights of the quadrature of irradiance, symmetric about 0: the 16 nodes t of Gauss and
+    /// Legendre, moved towards the ends of −1 … 1 by sin κt / sin κ, κ = 0.95 π/2.
+    IRRADIANCE_NODES: vec2 [8] = [
+        [0.141_745_43, 0.280_737_52],
+        [0.409_227_16, 0.249_552_95],
+        [0.633_446_7, 0.196_330_64],
+        [0.799_293_64, 0.135_296_9],
+        [0.906_031_5, 0.080_057_345],
+        [0.964_289_4, 0.039_234_38],
+        [0.990_079_76, 0.014_960_952],
+        [0.998_630_17, 0.003_829_305],
+    ];
+    /// Coefficients of z⁰ … z⁵ of (s − atan s) / s³ with z = s² in [0, 1]: the polynomial through its values at the zeros of
+    /// Chebyshev's T₆, off by up to 4.3e-6.
+    ARCTANGENT: float [6] =
+        [0.333_329_02, -0.199_685_5, 0.138_961_26, -0.092_292_994, 0.044_866_39, -0.010_578_67];
     /// Kernel of a pixel that no occluder of this view can shadow.
     KERNEL_LIT: uint = 0;
     /// Kernel of a pixel whose sub-light is hidden altogether.
@@ -196,8 +217,11 @@ shared! {
         round: uint,
         /// Sum of the weights of its views' sub-lights, summed in f32 in the order of the views.
         weight_sum: float,
-        /// Linear RGB radiance.
-        radiance: vec3,
+        /// 1 = a point without direction: it shines to all sides alike.
+        all_sides: uint,
+        /// [radiance · scene units²] Linear RGB radiance times area: the radiant intensity along `n`, which does not
+        /// end where the area does.
+        intensity: vec3,
         /// [view] Its first view and how many it has.
         view_first: uint,
         view_count: uint,

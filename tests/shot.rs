@@ -220,7 +220,12 @@ fn lights_without_extent_are_hard() {
         {"type": "disc", "center": [0, 3, 0], "radius": 0},
         {"type": "rect", "center": [0, 3, 0], "u": [0, 0, 0], "v": [0, 0, 0]},
     ]);
-    assert!(load(&json).unwrap().lights.iter().all(AreaLight::is_point));
+    let lights = load(&json).unwrap().lights;
+    assert!(lights.iter().all(AreaLight::is_point));
+    assert!(lights.iter().all(AreaLight::is_point_without_direction));
+    json["lights"][0]["normal"] = json!([0, -2, 0]);
+    let lights = load(&json).unwrap().lights;
+    assert!(lights[0].is_point() && !lights[0].is_point_without_direction());
 }
 
 #[test]

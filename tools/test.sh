@@ -68,7 +68,7 @@ slow_tests() {
 # The tests whose results a driver could change.
 rendering_tests() {
     cargo test --test canary --test passes --test agreement --test closed_forms --test properties \
-        --test techniques --test effect --test drivers --test faults --test cycles
+        --test techniques --test effect --test drivers --test faults --test cycles --test irradiance
 }
 
 # Debian's Chromium brings a second Vulkan driver, which needs no installation.

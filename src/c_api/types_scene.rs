@@ -150,7 +150,8 @@ pub const HS_LIGHT_RECT: u32 = 0;
 /// `shape` of a light: a disc.
 pub const HS_LIGHT_DISC: u32 = 1;
 
-/// A flat, one-sided light of constant radiance. Without extent it is a point and its shadow is hard.
+/// A flat, one-sided light of constant radiance. Without extent it is a point and its shadow is hard; a disc with a normal is
+/// the limit of small discs then, and other points shine to all sides alike.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hs_light {
@@ -166,13 +167,14 @@ pub struct hs_light {
     pub u: [f64; 3],
     /// [scene units] Half-axis of a rectangle, perpendicular to `u`; it shines along u x v.
     pub v: [f64; 3],
-    /// Along which a disc shines; any length but 0.
+    /// Along which a disc shines; any length but 0, unless the radius is 0.
     pub normal: [f64; 3],
     /// [scene units] Of a disc.
     pub radius: f64,
     /// [0, ...) Linear RGB.
     pub color: [f32; 3],
-    /// [radiance] Below 0: such that a white surface at the camera's target that faces the light has radiance 1.
+    /// [radiance] Of a light without extent: radiant intensity. Below 0: such that a white surface at the camera's target
+    /// that faces the light has radiance 1.
     pub intensity: f32,
     /// HS_LIGHT_...
     pub shape: u32,

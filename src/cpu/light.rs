@@ -20,19 +20,20 @@ pub struct Emitter {
 
 impl Emitter {
     /// # Errors
-    /// When the light has numbers that are not finite, or a disc no normal.
+    /// When the light has numbers that are not finite, or a disc with extent no normal.
     pub fn new(light: &AreaLight, origin: DVec3) -> Result<Self> {
         let (axes, normal, disc) = match light.shape {
             LightShape::Rect { u, v } => ([u, v], u.cross(v).try_normalize(), false),
             LightShape::Disc { normal, radius } => {
-                let normal = normal.try_normalize().ok_or_else(|| {
-                    Error::Invalid(format!(
+                let direction = normal.try_normalize();
+                if radius > 0.0 && direction.is_none() {
+                    return Err(Error::Invalid(format!(
                         "the normal of light “{}” has no direction",
                         light.name
-                    ))
-                })?;
-                let (a, b) = normal.any_orthonormal_pair();
-                ([a * radius, b * radius], Some(normal), true)
+                    )));
+                }
+                let (a, b, _) = light.frame();
+                ([a * radius, b * radius], direction, true)
             }
         };
         let center = light.center - origin;
@@ -172,6 +173,24 @@ mod tests {
         assert!((disc_share(0.0, 3.0) - 0.5).abs() < 1e-15);
         // A segment at half the radius: 1/3 − √3 / 4π of the disc is cut away.
         assert!((disc_share(0.5, 1.0) - (2.0 / 3.0 + 3f64.sqrt() / (4.0 * PI))).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_point_without_normal_shines_to_all_sides() {
+        let point = |normal, radius| AreaLight {
+            name: String::new(),
+            center: DVec3::ZERO,
+            shape: LightShape::Disc { normal, radius },
+            color: glam::Vec3::ONE,
+            intensity: None,
+        };
+        let sides = |normal| {
+            let emitter = Emitter::new(&point(normal, 0.0), DVec3::ZERO).expect("a light");
+            [DVec3::Y, DVec3::NEG_Y].map(|place| emitter.share_in_front(place, -place))
+        };
+        assert_eq!(sides(DVec3::ZERO), [1.0, 1.0]);
+        assert_eq!(sides(DVec3::NEG_Y), [0.0, 1.0]);
+        assert!(Emitter::new(&point(DVec3::ZERO, 1.0), DVec3::ZERO).is_err());
     }
 
     #[test]

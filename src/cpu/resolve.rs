@@ -30,5 +30,6 @@ fn faces_light(light: &Light, position: Vec3, normal: Vec3) -> bool {
     };
     let magnitude = to_point.abs() + Vec3::from(light.center).abs();
     let rounding = HORIZON_ROUNDING * (magnitude.x + magnitude.y + magnitude.z);
-    to_point.dot(light.n.into()) > rounding && reach - normal.dot(to_point) > rounding
+    let in_front = light.all_sides != 0 || to_point.dot(light.n.into()) > rounding;
+    in_front && reach - normal.dot(to_point) > rounding
 }

@@ -88,6 +88,7 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
         near: Vec::new(),
     };
     let parts = technique::parts(&host.light, &settings.of_light(&host.light));
+    let found = vec![found; host.light.sides().len()];
     plan.add_light(settings, &placed(&host.light), parts, &found);
     if host.casters == Casters::Maps {
         // A host's map may be turned any way.
@@ -114,7 +115,7 @@ fn placed(light: &AreaLight) -> Placed<'_> {
         light,
         origin: DVec3::ZERO,
         touch: light.touch(light.center.abs().max_element()),
-        radiance: [0.0; 3],
+        intensity: [0.0; 3],
     }
 }
 
@@ -127,7 +128,9 @@ impl Plan {
         let placed = placed(light);
         for planned in &mut self.lights {
             let round = matches!(light.shape, crate::scene::LightShape::Disc { .. });
-            let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2]);
+            let all_sides = u32::from(light.is_point_without_direction());
+            let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2])
+                || all_sides != planned.light.all_sides;
             if recipe_changes || u32::from(round) != planned.light.round {
                 return Err(Error::Invalid(
                     "the light has another shape than the one that the effect was made for".into(),
@@ -136,7 +139,7 @@ impl Plan {
             let views =
                 planned.light.view_first..planned.light.view_first + planned.light.view_count;
             let weight_sum = planned.light.weight_sum;
-            planned.light = whole_light(placed.origin, light, placed.radiance, weight_sum, views);
+            planned.light = whole_light(placed.origin, light, placed.intensity, weight_sum, views);
             for set in &mut planned.sets {
                 let site = placed.site(&set.settings, self.levels);
                 for view in &mut set.views {

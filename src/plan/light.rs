@@ -36,8 +36,7 @@ pub struct ViewSet {
     /// As they run in its views.
     pub settings: Settings,
     pub recipe: Recipe,
-    /// [sub-light or point] That have a view for each face.
-    pub part_count: usize,
+    /// Part by part, each towards the same faces.
     pub views: Vec<ViewPlan>,
 }
 
@@ -98,8 +97,8 @@ pub(super) struct Placed<'a> {
     pub origin: DVec3,
     /// [scene units] See [`Shot::touch`].
     pub touch: f64,
-    /// Linear RGB.
-    pub radiance: [f32; 3],
+    /// See [`views::intensity`].
+    pub intensity: [f32; 3],
 }
 
 impl<'a> Placed<'a> {
@@ -108,7 +107,7 @@ impl<'a> Placed<'a> {
             light,
             origin: shot.origin(),
             touch: shot.touch(light),
-            radiance: views::radiance(shot, light),
+            intensity: views::intensity(shot, light),
         }
     }
 
@@ -125,29 +124,27 @@ impl<'a> Placed<'a> {
 }
 
 impl Plan {
-    /// `parts`: of the light as it is cut by settings as they run for it.
+    /// `parts`: of the light as it is cut by settings as they run for it; `found`: for each side that it shines to.
     pub(super) fn add_light(
         &mut self,
         settings: &Settings,
         placed: &Placed,
         parts: Vec<Part>,
-        found: &Survey,
+        found: &[Survey],
     ) {
-        let outcome = match found {
-            Survey {
-                receivers: false, ..
-            } => Outcome::Dark,
-            Survey { casters: false, .. } => Outcome::Unshadowed,
+        let outcome = match (
+            found.iter().any(|side| side.receivers),
+            found.iter().any(|side| side.casters),
+        ) {
+            (false, _) => Outcome::Dark,
+            (_, false) => Outcome::Unshadowed,
             _ => Outcome::Shadowed,
         };
-        let (part_count, near_count) = (parts.len(), found.near_count());
-        let sampled = sampled(settings.of_light(placed.light), parts, &found.near);
+        let (part_count, near_count) = (parts.len(), found[0].near_count());
+        let sampled = sampled(settings.of_light(placed.light), parts, &found[0].near);
         let weight_sum = views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts));
         let view_first = self.views().count() as u32;
-        let sets = match outcome {
-            Outcome::Shadowed => self.view_sets(placed, sampled, found),
-            _ => Vec::new(),
-        };
+        let sets = self.view_sets(placed, &sampled, found);
         let view_count: usize = sets.iter().map(|set| set.views.len()).sum();
         let view_range = view_first..view_first + view_count as u32;
         let light = placed.light;
@@ -155,10 +152,10 @@ impl Plan {
             "" => format!("light {}", self.lights.len()),
             name => name.to_owned(),
         };
-        let radiance = placed.radiance;
+        let intensity = placed.intensity;
         self.lights.push(LightPlan {
             name,
-            light: views::whole_light(placed.origin, light, radiance, weight_sum, view_range),
+            light: views::whole_light(placed.origin, light, intensity, weight_sum, view_range),
             outcome,
             sets,
             part_count,
@@ -166,33 +163,27 @@ impl Plan {
         });
     }
 
-    fn view_sets(
+    fn view_sets<'s>(
         &self,
         placed: &Placed,
-        sampled: Vec<(Settings, Vec<Part>)>,
-        found: &Survey,
+        sampled: &'s [(Settings, Vec<Part>)],
+        found: &[Survey],
     ) -> Vec<ViewSet> {
         let tables = self.views().filter(|view| view.sectors.is_some()).count() as u32;
         let mut sector_first = tables * (SECTOR_STEPS + 1);
-        let faces_of = |settings: &Settings| found.faces(reach(settings));
-        let counts = sampled.iter();
-        let view_count: usize = counts
-            .map(|(settings, parts)| parts.len() * faces_of(settings).len())
-            .sum();
-        let set = |(settings, parts): (Settings, Vec<Part>)| {
-            let faces = faces_of(&settings);
-            let site = placed.site(&settings, 0);
-            let aspects = parts.iter().flat_map(|part| {
-                faces.iter().map(|&face| Aspect {
-                    part: part.clone(),
-                    face,
-                    reach: if faces.len() > 1 {
-                        reach(&settings)
-                    } else {
-                        f32::MAX
-                    },
-                })
-            });
+        // A side without casters has no shadow on it.
+        let sides = found.iter().enumerate().filter(|(_, side)| side.casters);
+        let sets: Vec<(&Settings, Vec<Aspect>)> = sides
+            .flat_map(|(index, side)| {
+                let aspects = move |(settings, parts): &'s (Settings, Vec<Part>)| {
+                    (settings, aspects(settings, parts, side, index > 0))
+                };
+                sampled.iter().map(aspects)
+            })
+            .collect();
+        let accumulate = sets.iter().map(|(_, aspects)| aspects.len()).sum::<usize>() > 1;
+        let set = |(settings, aspects): (&Settings, Vec<Aspect>)| {
+            let site = placed.site(settings, 0);
             let view = |aspect: Aspect| {
                 let sectors = aspect.sectors();
                 let mut view = aspect.view(&site, placed.light, 0);
@@ -205,21 +196,39 @@ impl Plan {
                     variant: Variant {
                         round: sectors.is_some(),
                         oblique: aspect.face != 0,
-                        accumulate: view_count > 1,
+                        accumulate,
                     },
                     sectors,
                     aspect,
                 }
             };
             ViewSet {
-                views: aspects.map(view).collect(),
-                recipe: Recipe::new(&settings),
-                part_count: parts.len(),
-                settings,
+                views: aspects.into_iter().map(view).collect(),
+                recipe: Recipe::new(settings),
+                settings: settings.clone(),
             }
         };
-        sampled.into_iter().map(set).collect()
+        sets.into_iter().map(set).collect()
     }
+}
+
+/// Each of the parts, towards each face that may have receivers.
+fn aspects(settings: &Settings, parts: &[Part], found: &Survey, turned: bool) -> Vec<Aspect> {
+    let faces = found.faces(reach(settings));
+    let reach = match faces.len() {
+        1 => f32::MAX,
+        _ => reach(settings),
+    };
+    let of_part = |part: &Part| {
+        let aspect = |&face: &usize| Aspect {
+            part: part.clone(),
+            face,
+            turned,
+            reach,
+        };
+        faces.iter().map(aspect).collect::<Vec<_>>()
+    };
+    parts.iter().flat_map(of_part).collect()
 }
 
 /// Tangent up to which the front face of a view holds receivers; side faces hold the rest.

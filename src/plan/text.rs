@@ -92,8 +92,8 @@ impl Plan {
             out,
             "  views       {}: {} {} x {} {} ({})",
             set.views.len(),
-            set.part_count,
-            plural(set.part_count, part),
+            set.views.len() / faces.len(),
+            plural(set.views.len() / faces.len(), part),
             faces.len(),
             plural(faces.len(), "face"),
             faces.join(", ")

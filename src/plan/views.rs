@@ -1,5 +1,6 @@
 //! Lights and their views as the device sees them.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -30,6 +31,8 @@ pub struct Aspect {
     pub part: Part,
     /// 0 = front; 1, 2 = along ±u; 3, 4 = along ±v.
     pub face: usize,
+    /// Whether it looks behind the plane of a light that shines to all sides.
+    pub turned: bool,
     /// Tangent up to which the front face holds receivers; the largest there is where the light has no side faces.
     pub reach: f32,
 }
@@ -44,7 +47,10 @@ impl Aspect {
     /// The view where the light stands. Takes no memory.
     pub fn view(&self, site: &Site, light: &AreaLight, sector_first: u32) -> View {
         let part = self.part.of(light);
-        let (u, v, n) = light.frame();
+        let (u, v, n) = match self.turned {
+            true => light.turned().frame(),
+            false => light.frame(),
+        };
         // right × up = forward.
         let [right, up, forward] = match self.face {
             0 => [u, v, n],
@@ -89,11 +95,11 @@ impl Aspect {
     }
 }
 
-/// The light where it stands. `weight_sum`: of its parts, in the order in which the views add up.
+/// The light where it stands. `intensity`: see [`intensity`]; `weight_sum`: of its parts, in the order in which the views add up.
 pub fn whole_light(
     origin: DVec3,
     light: &AreaLight,
-    radiance: [f32; 3],
+    intensity: [f32; 3],
     weight_sum: f32,
     views: std::ops::Range<u32>,
 ) -> shared::Light {
@@ -107,7 +113,8 @@ pub fn whole_light(
         half_size: [half.0 as f32, half.1 as f32],
         round: u32::from(matches!(light.shape, LightShape::Disc { .. })),
         weight_sum,
-        radiance,
+        all_sides: u32::from(light.is_point_without_direction()),
+        intensity,
         view_first: views.start,
         view_count: views.len() as u32,
     }
@@ -120,21 +127,23 @@ pub fn weight_sum<'a>(parts: impl Iterator<Item = &'a Part>) -> f32 {
     weights.fold(0.0, |sum, weight| sum + weight)
 }
 
-/// Linear RGB radiance; unless it is given, such that a white surface at the camera's target that faces the
-/// light's centre has radiance 1 from that light. For a light without extent: radiant intensity.
-pub fn radiance(shot: &Shot, light: &AreaLight) -> [f32; 3] {
+/// [radiance · scene units²] Linear RGB radiance times area; for a light without extent its radiant intensity, straight ahead
+/// if it has a direction. Unless it is given, such that a white surface at the camera's target that faces the light's centre
+/// has radiance 1 from that light, as long as the light is small against its distance; at least a radiance of 1.
+pub fn intensity(shot: &Shot, light: &AreaLight) -> [f32; 3] {
+    let area = light.area();
     let way = shot.camera.target - light.center;
-    let square = way.length_squared().max(f64::MIN_POSITIVE);
     let (_, _, normal) = light.frame();
-    // The solid angle of a light that is small against its distance, or at most the hemisphere's share.
-    let share = if light.is_point() {
-        1.0 / square
+    let cosine = if light.is_point_without_direction() {
+        1.0
     } else {
-        (light.area() * normal.dot(way.normalize_or(normal)).abs().max(0.1)
-            / square
-            / std::f64::consts::PI)
-            .min(1.0)
+        normal.dot(way.normalize_or(normal)).abs().max(0.1)
     };
-    let intensity = light.intensity.unwrap_or((1.0 / share) as f32);
-    (light.color * intensity).into()
+    let intensity = match light.intensity.map(f64::from) {
+        None => area.max(PI * way.length_squared() / cosine),
+        Some(intensity) if light.is_point() => intensity,
+        Some(radiance) => radiance * area,
+    };
+    let channel = |color: f32| (f64::from(color) * intensity).min(f64::from(f32::MAX)) as f32;
+    light.color.to_array().map(channel)
 }

@@ -53,6 +53,35 @@ impl AreaLight {
         (TOUCH * 2.0 * u.max(v)).max(0.5 * f64::from(f32::EPSILON) * magnitude)
     }
 
+    /// Whether the light is a point without direction, which shines to all sides alike. A disc of radius 0 with a
+    /// normal has a direction: it is the limit of small discs, and shines by the cosine.
+    pub fn is_point_without_direction(&self) -> bool {
+        let directed = match self.shape {
+            LightShape::Rect { .. } => false,
+            LightShape::Disc { normal, .. } => normal.try_normalize().is_some(),
+        };
+        self.is_point() && !directed
+    }
+
+    /// The light as it shines to each side of a plane: itself, and turned round where it shines to all sides.
+    pub fn sides(&self) -> Vec<Self> {
+        let mut sides = vec![self.clone()];
+        if self.is_point_without_direction() {
+            sides.push(self.turned());
+        }
+        sides
+    }
+
+    /// A disc that shines to the other side.
+    pub fn turned(&self) -> Self {
+        let mut turned = self.clone();
+        let (_, _, forward) = self.frame();
+        if let LightShape::Disc { normal, .. } = &mut turned.shape {
+            *normal = -forward;
+        }
+        turned
+    }
+
     /// [scene units²]
     pub fn area(&self) -> f64 {
         let (u, v) = self.half_size();
