@@ -333,6 +333,13 @@ fn punctual_lights_need_a_radius() {
     };
     assert_eq!(shapes, [disc(DVec3::NEG_Y), disc(DVec3::NEG_Z)]);
     assert_eq!(scene.lights[0].intensity, None);
+    let options = LoadOptions {
+        punctual_radius: Some(0.0),
+        ..LoadOptions::default()
+    };
+    let lights = gltf.load_with(&options).unwrap().lights;
+    assert!(lights[0].is_point_without_direction());
+    assert!(lights[1].is_point() && !lights[1].is_point_without_direction());
 }
 
 #[test]

@@ -199,6 +199,8 @@ impl<'a> Emitters<'a> {
         let forward = Frame::of(world).forward;
         let normal = match json.type_ {
             Checked::Valid(Type::Spot) => forward,
+            // Without extent it has no direction, and shines to all sides alike; a disc must face one.
+            Checked::Valid(Type::Point) if self.punctual_radius == Some(0.0) => DVec3::ZERO,
             Checked::Valid(Type::Point) => (self.scene_center - world.translation)
                 .try_normalize()
                 .unwrap_or(forward),
