@@ -6,6 +6,7 @@ mod host;
 mod light;
 mod maps;
 mod memory;
+mod notes;
 mod omissions;
 mod passes;
 mod survey;
@@ -24,6 +25,7 @@ use survey::{Survey, survey};
 
 pub use host::{HostFrame, plan_for_host};
 pub use light::{LightPlan, Outcome, Variant, ViewPlan, ViewSet};
+pub use notes::shines_along;
 pub use views::{Aspect, Site};
 
 /// What the caller wants to have.
@@ -85,6 +87,8 @@ pub struct Plan {
     pub resources: Vec<(&'static str, u64)>,
     /// What is left out, and why.
     pub omissions: Vec<Omission>,
+    /// What will not be as it was asked for, a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// Something that a scene of another kind would need.
@@ -122,7 +126,9 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
             .iter()
             .map(|side| survey(shot, &frustum, side, &parts));
         let found: Vec<Survey> = found.collect();
-        plan.add_light(&shot.settings, &Placed::of_shot(shot, light), parts, &found);
+        let placed = Placed::of_shot(shot, light);
+        plan.add_light(&shot.settings, &placed, parts, &found);
+        plan.note_light(shot, &placed, &found);
     }
     plan.size_map(&shot.settings, limits)?;
     let retained = retained && plan.views().count() == 1;
@@ -141,6 +147,11 @@ impl Plan {
     /// The sets of views of all lights.
     pub(crate) fn sets(&self) -> impl Iterator<Item = &ViewSet> {
         self.lights.iter().flat_map(|light| &light.sets)
+    }
+
+    /// [sub-light] Of all lights, that points stand for.
+    pub fn near_count(&self) -> usize {
+        self.lights.iter().map(|light| light.near_count).sum()
     }
 
     fn views_mut(&mut self) -> impl Iterator<Item = &mut ViewPlan> {
@@ -173,6 +184,7 @@ impl Plan {
             passes: Vec::new(),
             resources: Vec::new(),
             omissions: Vec::new(),
+            notes: Vec::new(),
         }
     }
 

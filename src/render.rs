@@ -3,6 +3,7 @@
 mod chain;
 mod counts;
 mod effect;
+mod notes;
 mod resources;
 mod specialization;
 mod view;

@@ -191,6 +191,14 @@ impl Settings {
         }
     }
 
+    /// The usual settings, but that every sub-light is integrated, as in the publications.
+    pub fn published(technique: Technique) -> Self {
+        Self {
+            near_points: 0,
+            ..Self::usual(technique)
+        }
+    }
+
     /// As they run for a light: one without extent casts a hard shadow, whatever the technique.
     pub fn of_light(&self, light: &AreaLight) -> Self {
         let mut settings = self.clone();
@@ -233,6 +241,11 @@ impl Settings {
     /// Whether sub-lights that an occluder is near to give way to points.
     pub fn has_near_points(&self) -> bool {
         self.technique == Technique::PacketContour && self.near_points > 0
+    }
+
+    /// Whether it is the light's points that cast shadows, hard ones.
+    pub fn samples_points(&self) -> bool {
+        matches!(self.technique, Technique::Hard | Technique::ReferenceMaps)
     }
 
     /// Whether occluders are what contours enclose.

@@ -81,6 +81,7 @@ fn base(map: u32, split: u32) -> Settings {
     Settings {
         map,
         split,
+        near_points: 0,
         ..Settings::default()
     }
 }

@@ -51,6 +51,7 @@ pub unsafe extern "C" fn hs_renderer_create(
             renderer: Renderer::new(shot.context.gpu()?, &shown, options)?,
             frame: None,
         };
+        shot.context.note(&made.renderer.plan().notes);
         *target = RENDERERS.add(Held::new(&shot.context, made))?;
         Ok(())
     })

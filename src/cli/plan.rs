@@ -5,8 +5,8 @@ use halfshade::plan::{Outputs, plan};
 
 use super::calibration::Calibration;
 use super::given::Given;
-use super::print_notes;
 use super::shot_args::{DeviceArgs, ShotArgs};
+use super::{print_note, print_notes};
 
 /// Prints the passes that a shot needs, with sizes and memory, and what is left out and why.
 ///
@@ -37,6 +37,8 @@ pub fn run(args: &Args, given: &Given) -> Result<()> {
         let outputs = Outputs {
             picture: !args.visibility_only,
         };
-        super::print(&plan(&shot, outputs, &gpu.limits, false)?.to_string())
+        let plan = plan(&shot, outputs, &gpu.limits, false)?;
+        plan.notes.iter().for_each(|note| print_note(note));
+        super::print(&plan.to_string())
     })
 }

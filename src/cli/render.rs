@@ -18,7 +18,7 @@ use super::outputs::{self, Format, Output};
 use super::shot_args::{DeviceArgs, ShotArgs};
 use super::stats::Stats;
 use super::time_limit::{TimeLimit, parse_seconds};
-use super::{REPEAT, print_notes, progress};
+use super::{REPEAT, print_note, print_notes, progress};
 
 /// Renders a shot: a shaded picture, the visibility of each light, and what it cost.
 ///
@@ -159,7 +159,7 @@ fn render(args: &Args, given: &Given, gpu: &Arc<Gpu>) -> Result<Products> {
         },
     };
     let mut renderer = progress::spin("building pipelines", || Renderer::new(gpu, &shot, options))?;
-    let stats = timed_frames(args, gpu, &shot, &mut renderer)?;
+    let stats = timed_frames(args, gpu, &mut shot, &mut renderer)?;
     let picture = args.output.as_ref().map(|_| renderer.picture());
     let visibility = (args.visibility.as_ref()).map(|_| planes(args.light, &shot, &renderer));
     Ok(Products {
@@ -174,7 +174,7 @@ fn render(args: &Args, given: &Given, gpu: &Arc<Gpu>) -> Result<Products> {
 fn timed_frames(
     args: &Args,
     gpu: &Arc<Gpu>,
-    shot: &Shot,
+    shot: &mut Shot,
     renderer: &mut Renderer,
 ) -> Result<Stats> {
     // Without timing, the first frame is the only one.
@@ -192,6 +192,10 @@ fn timed_frames(
         bar.inc(1);
     }
     bar.finish_and_clear();
+    for note in renderer.notes()? {
+        print_note(&note);
+        shot.notes.push(note);
+    }
     Stats::new(gpu, shot, renderer, &frames, args.shot.counters)
 }
 

@@ -86,6 +86,7 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
         casters: true,
         tangents: [if host.side_faces { f64::INFINITY } else { 0.0 }; 4],
         near: Vec::new(),
+        touching: false,
     };
     let parts = technique::parts(&host.light, &settings.of_light(&host.light));
     let found = vec![found; host.light.sides().len()];

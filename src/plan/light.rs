@@ -140,8 +140,14 @@ impl Plan {
             (_, false) => Outcome::Unshadowed,
             _ => Outcome::Shadowed,
         };
-        let (part_count, near_count) = (parts.len(), found[0].near_count());
-        let sampled = sampled(settings.of_light(placed.light), parts, &found[0].near);
+        let settings = settings.of_light(placed.light);
+        let near: &[bool] = match settings.has_near_points() {
+            true => &found[0].near,
+            false => &[],
+        };
+        let near_count = near.iter().filter(|near| **near).count();
+        let part_count = parts.len();
+        let sampled = sampled(settings, parts, near);
         let weight_sum = views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts));
         let view_first = self.views().count() as u32;
         let sets = self.view_sets(placed, &sampled, found);

@@ -19,9 +19,10 @@ pub struct Survey {
     pub casters: bool,
     /// The largest tangents towards +u, −u, +v, −v under which parts of the light see receivers.
     pub tangents: [f64; 4],
-    /// Of each part of the light, whether a triangle that may cast stands before it, nearer than the part is wide. None
-    /// where nobody asked.
+    /// Of each part of the light, whether a triangle that may cast stands before it, nearer than the part is wide.
     pub near: Vec<bool>,
+    /// A surface stands before the light so closely that it counts as the lamp's own.
+    pub touching: bool,
 }
 
 impl Survey {
@@ -42,6 +43,13 @@ const ROUNDING: f64 = 2e-6;
 
 /// The same of what is found from corners and the light alone.
 const CORNER_ROUNDING: f64 = 2.4e-7;
+
+/// [share of the light's width] Occluders farther from it are near to no sub-light, however large it is: the width of one
+/// at the usual split.
+const NEAREST: f64 = 0.25;
+
+/// [share of the height up to which a surface is the lamp's own] Lower ones are in its plane.
+const IN_PLANE: f64 = 1e-3;
 
 /// A light in its own frame, relative to the camera's eye.
 struct Placed {
@@ -70,6 +78,14 @@ impl Placed {
         DVec3::from(self.axes.map(|axis| axis.dot(way)))
     }
 
+    /// Whether a triangle in the light's frame is before the light, within what counts as in its plane.
+    fn is_touched(&self, corners: &[DVec3; 3]) -> bool {
+        let upper = corners[0].max(corners[1]).max(corners[2]);
+        let lower = corners[0].min(corners[1]).min(corners[2]);
+        let beside = upper.truncate().cmplt(-self.half) | lower.truncate().cmpgt(self.half);
+        upper.z <= self.touch && lower.z > IN_PLANE * self.touch && !beside.any()
+    }
+
     /// How far the light reaches from its centre along a direction in its own frame.
     fn reach(&self, direction: DVec3) -> f64 {
         let along = direction.truncate().abs() * self.half;
@@ -90,6 +106,7 @@ pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight, parts: &[Part])
         casters: false,
         tangents: [0.0; 4],
         near: Vec::new(),
+        touching: false,
     };
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for index in 0..scene.triangles.len() {
@@ -112,13 +129,11 @@ pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight, parts: &[Part])
     if !found.receivers {
         return found;
     }
-    let mut near = match shot.settings.of_light(light).has_near_points() {
-        true => Near::new(&placed, parts),
-        false => Near::nobody_asked(),
-    };
+    let mut near = Near::new(&placed, parts);
     for index in 0..scene.triangles.len() {
         let corners = scene.corners_around(origin, index);
         let corners = corners.map(|corner| placed.to_light(corner));
+        found.touching |= placed.is_touched(&corners);
         if (found.casters && near.is_out_of(&corners)) || !may_cast(&placed, corners, lower, upper)
         {
             continue;
@@ -169,14 +184,6 @@ struct Near {
 }
 
 impl Near {
-    fn nobody_asked() -> Self {
-        Self {
-            cells: Vec::new(),
-            heights: (0.0, 0.0),
-            found: Vec::new(),
-        }
-    }
-
     fn new(light: &Placed, parts: &[Part]) -> Self {
         let cell = |part: &Part| {
             let (lower, upper) = part.cell();
@@ -187,8 +194,10 @@ impl Near {
             .iter()
             .map(|(lower, upper)| (upper - lower).max_element());
         let width = widths.fold(0.0, f64::max);
+        // Who asks for few sub-lights has asked for few views as well: farther occluders do not bring him many.
+        let nearest = NEAREST * 2.0 * light.half.max_element();
         Self {
-            heights: (light.touch, width),
+            heights: (light.touch, width.min(nearest)),
             found: vec![false; cells.len()],
             cells,
         }

@@ -58,6 +58,8 @@ fn settings(split: u32) -> Settings {
     Settings {
         split,
         map: 64,
+        // A host's casters are not known when its frames are planned.
+        near_points: 0,
         ..Settings::default()
     }
 }
@@ -82,6 +84,12 @@ impl Stage {
         let mut shot = gpu::load("plate", SIDE, settings);
         shot.camera.vfov_deg = 100.0;
         change(&mut shot.lights[0]);
+        // A host's positions and lights have no more bits than f32 relative to its origin.
+        let origin = shot.origin();
+        let rounded = |point: DVec3| (point - origin).as_vec3().as_dvec3() + origin;
+        let scene = Arc::make_mut(&mut shot.scene);
+        scene.positions.iter_mut().for_each(|p| *p = rounded(*p));
+        shot.lights[0].center = rounded(shot.lights[0].center);
         let mut renderer: Renderer = gpu::renderer(gpu, &shot);
         renderer.render().expect("a frame");
         let texels = (shot.settings.map * shot.settings.map) as usize;

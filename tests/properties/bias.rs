@@ -164,3 +164,34 @@ fn a_bare_slope_needs_no_integration() {
         }
     });
 }
+
+/// Lights without extent cast hard shadows: what runs decides about the bias, not what was asked for. So it is for
+/// percentage-closer filtering, whose samples are farther away.
+#[test]
+fn hard_shadows_have_a_bias_of_their_own() {
+    let asked = [
+        Settings::default(),
+        Settings::usual(Technique::Pcss),
+        Settings {
+            percentage_closer: true,
+            ..Settings::usual(Technique::Hard)
+        },
+    ];
+    with_gpu(|gpu| {
+        for (settings, degrees) in asked
+            .iter()
+            .flat_map(|s| SLOPES.map(|degrees| (s, degrees)))
+        {
+            let slope = Slope { degrees };
+            let mut shot = slope.shot(None);
+            shot.lights = vec![disc_light(DISTANT, 0.0)];
+            shot.settings = Settings {
+                map: 64,
+                ..settings.clone()
+            };
+            let image = render(gpu, &shot);
+            let shaded = surface(&image).filter(|&(value, _)| value < 1.0).count();
+            assert_eq!(shaded, 0, "{} at {degrees} degrees", settings.technique);
+        }
+    });
+}

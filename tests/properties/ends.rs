@@ -139,8 +139,10 @@ mod ulps {
             [PLACE.y - reach, PLACE.y + reach],
         );
         let scene = occluders.plate(0.0, &floor).build();
-        let eye = DVec3::new(PLACE.x, 1.0, PLACE.y);
-        let camera = camera(eye, eye - DVec3::Y, 2.0 * reach.atan().to_degrees());
+        // Not above the receivers, so that their places relative to the eye have all bits in use as well.
+        let (eye, target) = (DVec3::Y, DVec3::new(PLACE.x, 0.0, PLACE.y));
+        let vfov = 2.0 * (reach / eye.distance(target)).atan();
+        let camera = camera(eye, target, vfov.to_degrees());
         let mut shot = shot(scene, camera, lights[0].clone(), SIDE, settings);
         shot.lights = lights;
         shot

@@ -11,8 +11,10 @@ mod closed;
 mod ends;
 mod frames;
 mod generated;
+mod near;
 mod similarity;
 mod tilted;
+mod world;
 
 use std::sync::Arc;
 
@@ -37,6 +39,8 @@ fn settings(map: u32, split: u32) -> Settings {
     Settings {
         map,
         split,
+        // Contours are what is looked at, whatever stands before the light.
+        near_points: 0,
         ..Settings::default()
     }
 }

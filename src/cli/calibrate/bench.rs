@@ -251,7 +251,7 @@ fn settings() -> Settings {
         technique: Technique::PacketContour,
         split: SPLIT,
         map: MAP,
-        ..Settings::default()
+        ..Settings::published(Technique::PacketContour)
     }
 }
 

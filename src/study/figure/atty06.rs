@@ -166,7 +166,7 @@ fn candidates(x: f64, map: u32) -> Vec<Candidate> {
     let contours = |split| Settings {
         split,
         map,
-        ..Settings::default()
+        ..Settings::published(Technique::PacketContour)
     };
     vec![
         Candidate::new(PATCHES, x, patches(Technique::MicropatchHierarchical, map)),
@@ -180,7 +180,7 @@ pub fn patches(technique: Technique, map: u32) -> Settings {
     Settings {
         map,
         gap_filling: false,
-        ..Settings::usual(technique)
+        ..Settings::published(technique)
     }
 }
 

@@ -42,7 +42,7 @@ pub const FIG22: Experiment = Experiment {
             let contours = Settings {
                 split: 1,
                 map,
-                ..Settings::default()
+                ..Settings::published(Technique::PacketContour)
             };
             [
                 Candidate::new(PATCHES, pixels, patches(Technique::Micropatch, map)),

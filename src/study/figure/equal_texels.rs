@@ -3,7 +3,7 @@
 use super::check::{Check, number, numbers};
 use super::row::{Curve, ERROR, TIME, TIME_MAX, TIME_MIN, distinct};
 use super::{Candidate, Column, Experiment, NamedShot, Row, Trial, Truth};
-use crate::shot::{Overrides, Settings, Shot};
+use crate::shot::{Overrides, Settings, Shot, Technique};
 
 /// The scenes without any of the user's.
 const SCENES: [&str; 4] = ["knot", "staircase", "colonnade", "tree"];
@@ -69,7 +69,7 @@ pub const EQUAL_TEXELS: Experiment = Experiment {
                 let settings = Settings {
                     split,
                     map: budget / split,
-                    ..Settings::default()
+                    ..Settings::published(Technique::PacketContour)
                 };
                 Candidate::new(series(budget), f64::from(split), settings)
             })

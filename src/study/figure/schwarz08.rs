@@ -87,7 +87,7 @@ fn trial(scene: &str, maps: &[u32], structures: &[(&str, Technique, u32)]) -> Re
                     map,
                     mssm_bits,
                     split: 1,
-                    ..Settings::usual(technique)
+                    ..Settings::published(technique)
                 };
                 Candidate::new(series, f64::from(map), settings)
             })

@@ -175,7 +175,7 @@ pub fn packets(map: u32) -> Settings {
         split: 1,
         map,
         footprint_pruning: false,
-        ..Settings::usual(Technique::PacketContour)
+        ..Settings::published(Technique::PacketContour)
     }
 }
 
@@ -190,7 +190,7 @@ pub fn hierarchical(map: u32) -> Settings {
 pub fn rival(technique: Technique, map: u32) -> Settings {
     Settings {
         map,
-        ..Settings::usual(technique)
+        ..Settings::published(technique)
     }
 }
 

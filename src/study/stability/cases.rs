@@ -64,6 +64,64 @@ fn near_the_light() -> Vec<Case> {
         ..Stage::default()
     };
     all.push(beside.case("near the light", "receiver in the light's plane"));
+    all.extend(louvres());
+    all.extend(covers());
+    all
+}
+
+/// Upright slats close below the light, along and across it, of which no two points of the light see the same.
+fn louvres() -> Vec<Case> {
+    let slat = |aside: f64, top: f64| {
+        Shape::cuboid(
+            DVec3::new(aside - 0.01, top - 0.07, -0.5),
+            DVec3::new(aside + 0.01, top, 0.5),
+        )
+    };
+    let louvre = |gap: f64, turn: f64| {
+        let mut slats = Shape::default();
+        for i in 0..6 {
+            slats.append(&slat(0.2 * f64::from(i) - 0.5, 2.0 - gap));
+        }
+        for point in &mut slats.positions {
+            *point = rotated(*point, DVec3::Y, turn);
+        }
+        Stage {
+            more: slats,
+            ..Stage::default()
+        }
+    };
+    let gaps = [1e-6, 0.01, 0.03, 0.1, 0.2, 0.4];
+    let name = |gap: f64, turn: f64| format!("slats {gap} below the light, turned by {turn}");
+    gaps.iter()
+        .map(|&gap| (gap, 0.0))
+        .chain([(0.02, 40.0), (0.02, 45.0), (0.02, 90.0)])
+        .map(|(gap, turn)| louvre(gap, turn).case("near the light", name(gap, turn)))
+        .collect()
+}
+
+/// Plates before half of the light and before all of it, and a ceiling that the light is behind.
+fn covers() -> Vec<Case> {
+    let sheet = |name: &str, x: [f64; 2], half: f64, gap: f64| {
+        let corner = |x: f64, z: f64| DVec3::new(x, 2.0 - gap, z);
+        let mut more = Shape::square(1.0);
+        for point in &mut more.positions {
+            *point = corner(if point.x < 0.0 { x[0] } else { x[1] }, half * point.z);
+        }
+        let stage = Stage {
+            more,
+            ..Stage::default()
+        };
+        stage.case(
+            "near the light",
+            format!("{name} {gap:.0e} below the light"),
+        )
+    };
+    let mut all = Vec::new();
+    for gap in [1e-6, 1e-4, 1e-2] {
+        all.push(sheet("cover", [-0.6, 0.6], 0.6, gap));
+        all.push(sheet("cover of a half", [-0.6, 0.07], 0.6, gap));
+    }
+    all.push(sheet("ceiling", [-4.0, 4.0], 4.0, 1e-3));
     all
 }
 

@@ -16,7 +16,7 @@ use crate::shot::{Shot, Technique};
 const WORK_MAX: u64 = 4 << 30;
 
 /// [visibility] How far the image of a technique that integrates contours is off what its own maps say in f64, at
-/// most. None: the technique is another one, or the shot is too large for the twin.
+/// most. None: the technique is another one, points stand for sub-lights, or the shot is too large for the twin.
 ///
 /// # Errors
 /// The device is lost, or memory cannot be read back.
@@ -28,7 +28,7 @@ pub fn largest_deviation(
     let integrates = matches!(
         shot.settings.technique,
         Technique::PacketContour | Technique::PixelContour
-    );
+    ) && renderer.plan().near_count() == 0;
     let pixels = image.data.len();
     let light = renderer.plan().lights[0].light;
     let texels = u64::from(shot.settings.map).pow(2);

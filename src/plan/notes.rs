@@ -1,0 +1,86 @@
+//! What will not be as it was asked for, a sentence each.
+
+use super::light::Placed;
+use super::survey::Survey;
+use super::{LightPlan, Outcome, Plan};
+use crate::shared::BIAS_ROUNDING;
+use crate::shot::{Settings, Shot};
+
+/// [share of the way from eye to target] A rounding of depths that is seen.
+const SEEN: f64 = 1e-3;
+
+/// Rounding of a depth, in steps of the bias for it: the depth itself, and the coordinates that it is found from.
+const ROUNDINGS: f64 = 3.0;
+
+impl Plan {
+    /// Notes on the light that was planned last; `found`: on each side of it.
+    pub(super) fn note_light(&mut self, shot: &Shot, placed: &Placed, found: &[Survey]) {
+        let settings = shot.settings.of_light(placed.light);
+        let Some(planned) = self.lights.last() else {
+            return;
+        };
+        let notes = [
+            lights_nothing(planned),
+            integrates_near_occluders(planned, &settings, found),
+            touches(planned, placed, found),
+            is_far(planned, shot, placed),
+        ];
+        self.notes.extend(notes.into_iter().flatten());
+    }
+}
+
+/// Where a light shines to, for people.
+pub fn shines_along(planned: &LightPlan) -> String {
+    let [x, y, z] = planned.light.n;
+    format!("it shines along ({x:.3}, {y:.3}, {z:.3})")
+}
+
+fn lights_nothing(planned: &LightPlan) -> Option<String> {
+    let name = &planned.name;
+    (planned.outcome == Outcome::Dark).then(|| {
+        format!(
+            "{name} lights nothing that the camera sees: {}; if that is the wrong way, swap its u and v or turn its normal.",
+            shines_along(planned)
+        )
+    })
+}
+
+fn integrates_near_occluders(
+    planned: &LightPlan,
+    settings: &Settings,
+    found: &[Survey],
+) -> Option<String> {
+    let near: usize = found.iter().map(Survey::near_count).sum();
+    let integrated = planned.sets.iter().any(|set| set.settings == *settings);
+    let (name, technique) = (&planned.name, settings.technique);
+    (near > 0 && integrated && !settings.has_near_points() && !settings.samples_points()).then(|| {
+        format!(
+            "An occluder is nearer to {name} than its sub-lights are wide ({near} of {}), where {technique} errs; \
+             packet-contour with --near-points does not.",
+            planned.part_count
+        )
+    })
+}
+
+fn touches(planned: &LightPlan, placed: &Placed, found: &[Survey]) -> Option<String> {
+    let name = &planned.name;
+    found.iter().any(|side| side.touching).then(|| {
+        format!(
+            "A surface less than {:.1e} before {name} is taken for the lamp's own and casts no shadow.",
+            placed.touch
+        )
+    })
+}
+
+fn is_far(planned: &LightPlan, shot: &Shot, placed: &Placed) -> Option<String> {
+    let camera = &shot.camera;
+    let away = placed.light.center.distance(camera.target);
+    let lost = ROUNDINGS * f64::from(BIAS_ROUNDING) * away;
+    let name = &planned.name;
+    (planned.outcome == Outcome::Shadowed && lost > SEEN * camera.eye.distance(camera.target))
+        .then(|| {
+            format!(
+                "{name} is {away:.1e} away, where depths are rounded: occluders less than {lost:.1e} above a surface cast no shadow on it."
+            )
+        })
+}
