@@ -130,7 +130,7 @@ shared_constants! {
     /// [share] Rounding of a receiver's height over the light's plane, and of the light's over the receiver's, per unit of
     /// the coordinates' magnitude: 8 units in the last place. What is no higher counts as in the plane, so that a surface
     /// whose plane runs along the light's border is decided the same in all its pixels.
-    HORIZON_ROUNDING: float = 4.76837158203125e-7;
+    HORIZON_ROUNDING: float = 4.768_371_6e-7;
     /// Positive nodes and weights of the quadrature of irradiance, symmetric about 0: the 16 nodes t of Gauss and
     /// Legendre, moved towards the ends of −1 … 1 by sin κt / sin κ, κ = 0.95 π/2.
     IRRADIANCE_NODES: vec2 [8] = [

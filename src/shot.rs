@@ -115,7 +115,8 @@ pub struct Settings {
     /// [map] [1, 4096] `ReferenceMaps` only.
     pub maps: u32,
     /// [point] [0, 4096] `PacketContour` only: on the whole light, of those that stand for sub-lights that an occluder is
-    /// nearer to than they are wide; 0 = none, they are integrated all the same.
+    /// nearer to than they are wide; fewer where side faces multiply their views; 0 = none, they are integrated all the
+    /// same.
     pub near_points: u32,
     /// [texel] Bias along the receiver's plane, in texels of its slope; None: the usual one of what runs
     /// ([`Settings::bias`]).
@@ -142,6 +143,9 @@ pub struct Shot {
 /// [texel] The smallest width and height of a shadow map.
 const MIN_MAP: u32 = 16;
 
+/// [texel] A map of a point that is no larger is not made smaller.
+const POINT_MAP: u32 = 128;
+
 /// [pixel] The largest width and height of an image.
 pub const MAX_SIZE: u32 = 32768;
 
@@ -166,7 +170,7 @@ impl Default for Settings {
             filter_samples: 32,
             percentage_closer: false,
             maps: 1024,
-            near_points: 160,
+            near_points: 256,
             bias: None,
             counters: false,
         }
@@ -210,11 +214,11 @@ impl Settings {
     }
 
     /// As they run for points of the light that stand for a part of it: hard shadows of which the mean counts. A quarter of
-    /// the texels is enough, since a point's error is one of many.
+    /// the texels of large maps is enough, since a point's error is one of many.
     pub fn of_points(&self) -> Self {
         Self {
             technique: Technique::ReferenceMaps,
-            map: (self.map / 2).max(MIN_MAP),
+            map: (self.map / 2).max(self.map.min(POINT_MAP)),
             bias: None,
             ..self.clone()
         }

@@ -3,7 +3,7 @@
 // A vertex in the frame of the view's face. What is near to the light is as exact as f32 is there, wherever positions are
 // relative to: what their rounding left over is added to the difference.
 vec3 caster_position(View view, uint vertex) {
-    precise vec3 way = positions[vertex] - view.center;
-    if (RESIDUALS) way += position_residuals[vertex] - view.center_residual;
+    vec3 residual = RESIDUALS ? position_residuals[vertex] : vec3(0.0);
+    precise vec3 way = (positions[vertex] - view.center) + (residual - view.center_residual);
     return to_face(view, way);
 }

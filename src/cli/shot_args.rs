@@ -79,7 +79,7 @@ pub struct ShotArgs {
     maps: u32,
     /// With packet-contour: points of the light that cast hard shadows, on all of it, where an occluder is nearer to
     /// sub-lights than they are wide, 0 to 4096; 0 = integrate these as well
-    #[arg(long, value_name = "N", default_value_t = 160)]
+    #[arg(long, value_name = "N", default_value_t = 256)]
     near_points: u32,
     /// Count pixels, packets, nodes and edges (takes time)
     #[arg(long)]

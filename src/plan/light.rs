@@ -147,7 +147,7 @@ impl Plan {
         };
         let near_count = near.iter().filter(|near| **near).count();
         let part_count = parts.len();
-        let sampled = sampled(settings, parts, near);
+        let sampled = sampled(settings, parts, near, found[0].faces(POINT_REACH).len());
         let weight_sum = views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts));
         let view_first = self.views().count() as u32;
         let sets = self.view_sets(placed, &sampled, found);
@@ -247,9 +247,15 @@ fn reach(settings: &Settings) -> f32 {
 
 /// The parts of a light with the settings that run in their views. Where an occluder is nearer to a part than the part is
 /// wide (`near`), its points differ too much in what they see for the middle to stand for them, however it is integrated:
-/// points with hard shadows take its place.
-fn sampled(settings: Settings, parts: Vec<Part>, near: &[bool]) -> Vec<(Settings, Vec<Part>)> {
-    let on_light: Vec<DVec2> = evenly_spread(settings.near_points).collect();
+/// points with hard shadows take its place. Where these have several faces, time and error share what that costs.
+fn sampled(
+    settings: Settings,
+    parts: Vec<Part>,
+    near: &[bool],
+    faces: usize,
+) -> Vec<(Settings, Vec<Part>)> {
+    let count = f64::from(settings.near_points) / (faces as f64).sqrt();
+    let on_light: Vec<DVec2> = evenly_spread(count.ceil() as u32).collect();
     let is_near = |index: usize| near.get(index).copied().unwrap_or(false);
     let (mut whole, mut points) = (Vec::new(), Vec::new());
     for (index, part) in parts.into_iter().enumerate() {

@@ -26,7 +26,7 @@ pub use cases::cases;
 pub use stage::Case;
 
 /// Rays per pixel of the truth.
-const SAMPLES: u32 = 256;
+const SAMPLES: u32 = 1024;
 /// By how much more than the truth does a pixel differ from all its neighbours to be a speckle: the truth's own noise
 /// is below a tenth of it.
 const SPECKLE: f32 = 0.05;

@@ -301,7 +301,9 @@ fn zero_is_never_negative() {
         "--bias=-0.0",
     ];
     let files = ["--visibility", "v.exr", "--stats", "s.json"];
-    let said = folder.does(&[&render[..], &files].concat());
+    let run = folder.run(&[&render[..], &files].concat());
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let said = run.out;
     let stats = std::fs::read_to_string(folder.path("s.json")).expect("stats");
 
     let lit = [1.0; 4];
@@ -321,5 +323,39 @@ fn zero_is_never_negative() {
         let words = text.split(|c: char| !(c.is_ascii_digit() || c == '-' || c == '.' || c == 'e'));
         let negative = |word: &&str| word.starts_with('-') && word.parse() == Ok(0.0);
         assert_eq!(words.filter(negative).count(), 0, "{text}");
+    }
+}
+
+/// A picture that is not what was asked for says so, on standard error and in the stats.
+#[test]
+fn what_lights_or_sees_nothing_is_told() {
+    type Change = fn(&mut Value);
+    let shots: [(&str, Change); 3] = [
+        ("it shines along (0.000, 1.000, 0.000)", |shot| {
+            // u and v swapped.
+            let light = &mut shot["lights"][0];
+            let u = light["u"].take();
+            light["u"] = light["v"].take();
+            light["v"] = u;
+        }),
+        ("The camera sees no surface", |shot| {
+            shot["camera"]["target"] = json!([0, 100, 0]);
+        }),
+        ("away, where depths are rounded", |shot| {
+            let light = &mut shot["lights"][0];
+            light["center"] = json!([0, 1e5, 0]);
+        }),
+    ];
+    for (expected, change) in shots {
+        let (folder, mut shot) = (Folder::new(), plate());
+        shot["lights"].as_array_mut().expect("lights").truncate(1);
+        change(&mut shot);
+        folder.write_shot(&shot);
+        let quick = ["--map", "64", "--split", "1", "--stats", "s.json"];
+        let run = folder.run(&[&["render", "shot.json"], &quick[..]].concat());
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert!(run.err.contains(expected), "{expected}: {}", run.err);
+        let stats = std::fs::read_to_string(folder.path("s.json")).expect("stats");
+        assert!(stats.contains(expected), "{expected}: {stats}");
     }
 }
