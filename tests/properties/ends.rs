@@ -224,7 +224,7 @@ mod ulps {
             for (axis, focal) in fit.focal.into_iter().enumerate() {
                 let world = 2 * axis;
                 let (lower, upper) = ends(&mut positions.iter().map(|position| {
-                    let tangent = (f64::from(position[world]) - center[world]) / LIGHT_HEIGHT;
+                    let tangent = (position[world] - center[world]) / LIGHT_HEIGHT;
                     f64::from(focal) * tangent + f64::from(fit.center[axis])
                 }));
                 assert!(
