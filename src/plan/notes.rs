@@ -9,6 +9,9 @@ use crate::shot::{Settings, Shot};
 /// [share of the way from eye to target] A rounding of depths that is seen.
 const SEEN: f64 = 1e-3;
 
+/// [point] On a light: with as many, slats in most directions err by less than 0.02.
+const FEW_POINTS: usize = 200;
+
 /// Rounding of a depth, in steps of the bias for it: the depth itself, and the coordinates that it is found from.
 const ROUNDINGS: f64 = 3.0;
 
@@ -22,6 +25,7 @@ impl Plan {
         let notes = [
             lights_nothing(planned),
             integrates_near_occluders(planned, &settings, found),
+            has_few_points(planned),
             touches(planned, placed, found),
             is_far(planned, shot, placed),
         ];
@@ -58,6 +62,21 @@ fn integrates_near_occluders(
             "An occluder is nearer to {name} than its sub-lights are wide ({near} of {}), where {technique} errs; \
              packet-contour with --near-points does not.",
             planned.part_count
+        )
+    })
+}
+
+fn has_few_points(planned: &LightPlan) -> Option<String> {
+    let points = (planned.sets.iter())
+        .filter(|_| planned.near_count > 0)
+        .find(|set| set.settings.samples_points())?;
+    let front = points.views.iter().filter(|view| view.view.face == 0);
+    let (count, name) = (front.count(), &planned.name);
+    let on_light = count * planned.part_count / planned.near_count;
+    (on_light < FEW_POINTS).then(|| {
+        format!(
+            "An occluder is so near to {name} that {on_light} points on it cast shadows, which may err by more than 0.02; \
+             raise --near-points for more.",
         )
     })
 }

@@ -55,7 +55,9 @@ fn what_is_for_people_is_ignored_silently() {
             .extension()
             .is_some_and(|extension| extension == "json")
         {
-            folder.does(&["plan", file.to_str().expect("UTF-8")]);
+            let run = folder.run(&["plan", file.to_str().expect("UTF-8")]);
+            assert_eq!(run.code, Some(0), "{}", run.err);
+            assert!(!run.err.contains("ignored"), "{}", run.err);
         }
     }
 }
