@@ -21,12 +21,6 @@ layout(binding = 5, scalar) writeonly buffer CasterIndices { uint caster_indices
 layout(binding = 6, scalar) readonly buffer PositionResiduals { vec3 position_residuals[]; };
 #include "caster_position.glsl"
 
-// Rounding of plane distances, relative to the magnitude of the coordinates that they are found from: receivers on the
-// triangle's own plane count as on its side.
-const float PLANE_ROUNDING = 2e-6;
-// The same of what is found from corners and the light alone: 4 units in the last place.
-const float CORNER_ROUNDING = 2.4e-7;
-
 // Upper bounds of one invocation's casters; see `Fit`.
 struct Reach {
     vec4 tangents;

@@ -121,12 +121,9 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
     };
     for light in &shot.lights {
         let parts = technique::parts(light, &shot.settings.of_light(light));
-        let sides = light.sides();
-        let found = sides
-            .iter()
-            .map(|side| survey(shot, &frustum, side, &parts));
-        let found: Vec<Survey> = found.collect();
         let placed = Placed::of_shot(shot, light);
+        let look = |side: &_| survey(shot, &frustum, side, &parts, placed.touch);
+        let found: Vec<Survey> = light.sides().iter().map(look).collect();
         plan.add_light(&shot.settings, &placed, parts, &found);
         plan.note_light(shot, &placed, &found);
     }

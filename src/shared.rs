@@ -127,6 +127,11 @@ shared_constants! {
     /// [share of d_p] Bias for the rounding of positions and depths, per unit of the coordinates'
     /// magnitude over the receiver's depth.
     BIAS_ROUNDING: float = 1e-6;
+    /// [share] Rounding of plane distances, per unit of the magnitude of the coordinates that they are found from: receivers
+    /// on a triangle's own plane count as on its side.
+    PLANE_ROUNDING: float = 2e-6;
+    /// The same of what is found from a triangle's corners and the light alone: 4 units in the last place.
+    CORNER_ROUNDING: float = 2.4e-7;
     /// [share] Rounding of a receiver's height over the light's plane, and of the light's over the receiver's, per unit of
     /// the coordinates' magnitude: 8 units in the last place. What is no higher counts as in the plane, so that a surface
     /// whose plane runs along the light's border is decided the same in all its pixels.

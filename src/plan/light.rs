@@ -141,11 +141,10 @@ impl Plan {
             _ => Outcome::Shadowed,
         };
         let settings = settings.of_light(placed.light);
-        let near: &[bool] = match settings.has_near_points() {
-            true => &found[0].near,
-            false => &[],
+        let (near, near_count): (&[bool], _) = match settings.has_near_points() {
+            true => (&found[0].near, found[0].near_count()),
+            false => (&[], 0),
         };
-        let near_count = near.iter().filter(|near| **near).count();
         let part_count = parts.len();
         let sampled = sampled(settings, parts, near, found[0].faces(POINT_REACH).len());
         let weight_sum = views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts));

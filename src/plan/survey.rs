@@ -5,6 +5,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::scene::{AreaLight, LightShape};
+use crate::shared::{CORNER_ROUNDING, PLANE_ROUNDING};
 use crate::shot::Shot;
 use crate::sub_light::Part;
 
@@ -38,11 +39,9 @@ impl Survey {
     }
 }
 
-/// Rounding of plane distances, relative to the coordinates' magnitude, as in `casters.comp`.
-const ROUNDING: f64 = 2e-6;
-
-/// The same of what is found from corners and the light alone.
-const CORNER_ROUNDING: f64 = 2.4e-7;
+/// Of plane distances, as on the device.
+const ROUNDING: f64 = PLANE_ROUNDING as f64;
+const OF_CORNERS: f64 = CORNER_ROUNDING as f64;
 
 /// [share of the light's width] Occluders farther from it are near to no sub-light, however large it is: the width of one
 /// at the usual split.
@@ -62,11 +61,11 @@ struct Placed {
 }
 
 impl Placed {
-    fn new(shot: &Shot, light: &AreaLight) -> Self {
+    fn new(light: &AreaLight, origin: DVec3, touch: f64) -> Self {
         let (u, v, n) = light.frame();
         Self {
-            center: light.center - shot.origin(),
-            touch: shot.touch(light),
+            center: light.center - origin,
+            touch,
             axes: [u, v, n],
             half: light.half_size().into(),
             round: matches!(light.shape, LightShape::Disc { .. }),
@@ -97,10 +96,16 @@ impl Placed {
     }
 }
 
-/// `parts`: of the light.
-pub fn survey(shot: &Shot, frustum: &Frustum, light: &AreaLight, parts: &[Part]) -> Survey {
+/// `parts`: of the light; `touch`: see [`Shot::touch`].
+pub fn survey(
+    shot: &Shot,
+    frustum: &Frustum,
+    light: &AreaLight,
+    parts: &[Part],
+    touch: f64,
+) -> Survey {
     let (scene, origin) = (&*shot.scene, shot.origin());
-    let placed = Placed::new(shot, light);
+    let placed = Placed::new(light, origin, touch);
     let mut found = Survey {
         receivers: false,
         casters: false,
@@ -245,7 +250,7 @@ fn may_cast(light: &Placed, corners: [DVec3; 3], lower: DVec3, upper: DVec3) -> 
     let of_center = rounding * light.center.abs().element_sum();
     let reaches = |normal: DVec3| {
         let plane = normal.dot(corners[0]);
-        light.reach(normal) > plane + CORNER_ROUNDING * of_corner
+        light.reach(normal) > plane + OF_CORNERS * of_corner
             || farthest_along(lower, upper, normal, rounding)
                 > plane + ROUNDING * of_corner + of_center
     };
