@@ -1,5 +1,5 @@
-//! Compiles `glsl/` to SPIR-V and writes `shaders.rs`: every shader with its words, its bindings by
-//! name and kind. The library embeds them and needs no compiler at run time.
+//! Compiles `glsl/` to SPIR-V and writes `shaders.rs`: every shader with its words, its bindings by name and kind, and
+//! its specialization constants by name. The library embeds them and needs no compiler at run time.
 
 use std::{env, fmt::Write, fs, path::Path, path::PathBuf, process::Command};
 
@@ -43,10 +43,13 @@ fn main() {
             )
             .expect("OUT_DIR is writable");
         }
+        let module =
+            rspirv::dr::load_words(&named).unwrap_or_else(|error| panic!("{file}: {error}"));
         writeln!(
             table,
-            "Shader {{ name: {file:?}, words: words!(\"{file}.spv\"), bindings: &[{}] }},",
-            bindings(&named, file)
+            "Shader {{ name: {file:?}, words: words!(\"{file}.spv\"), bindings: &[{}], constants: &[{}] }},",
+            bindings(&module, file),
+            constants(&module, &used_constants(&words, file), file)
         )
         .expect("writing to a string");
     }
@@ -156,8 +159,7 @@ fn compile(path: &Path, header: &str, level: OptimizationLevel) -> Vec<u32> {
 }
 
 /// The descriptors of a shader as Rust source: name, binding and kind.
-fn bindings(words: &[u32], file: &str) -> String {
-    let module = rspirv::dr::load_words(words).unwrap_or_else(|error| panic!("{file}: {error}"));
+fn bindings(module: &Module, file: &str) -> String {
     let mut text = String::new();
     for decoration in &module.annotations {
         // OpDecorate %variable Binding n
@@ -169,7 +171,7 @@ fn bindings(words: &[u32], file: &str) -> String {
         else {
             continue;
         };
-        let (name, kind) = resource(&module, variable).unwrap_or_else(|| {
+        let (name, kind) = resource(module, variable).unwrap_or_else(|| {
             panic!("{file}: binding {binding} is nothing that the recorder binds")
         });
         write!(
@@ -177,6 +179,36 @@ fn bindings(words: &[u32], file: &str) -> String {
             "Binding {{ name: {name:?}, binding: {binding}, kind: BindingKind::{kind} }}, "
         )
         .expect("writing to a string");
+    }
+    text
+}
+
+/// The specialization constants of a module: result and id.
+fn constant_ids(module: &Module) -> impl Iterator<Item = (u32, u32)> {
+    (module.annotations.iter()).filter_map(|decoration| match decoration.operands[..] {
+        // OpDecorate %constant SpecId n
+        [
+            Operand::IdRef(constant),
+            Operand::Decoration(Decoration::SpecId),
+            Operand::LiteralBit32(id),
+        ] => Some((constant, id)),
+        _ => None,
+    })
+}
+
+/// The ids of those constants that the optimizer has left.
+fn used_constants(words: &[u32], file: &str) -> Vec<u32> {
+    let module = rspirv::dr::load_words(words).unwrap_or_else(|error| panic!("{file}: {error}"));
+    constant_ids(&module).map(|(_, id)| id).collect()
+}
+
+/// The specialization constants that a shader uses as Rust source: name and id.
+fn constants(module: &Module, used: &[u32], file: &str) -> String {
+    let mut text = String::new();
+    for (constant, id) in constant_ids(module).filter(|(_, id)| used.contains(id)) {
+        let name = variable_name(module, constant)
+            .unwrap_or_else(|| panic!("{file}: constant {id} has no name"));
+        write!(text, "({name:?}, {id}), ").expect("writing to a string");
     }
     text
 }

@@ -53,9 +53,9 @@ const STRUCTURES: [Structure; 3] = [
 ];
 
 fn bytes(renderer: &Renderer, name: &str) -> u64 {
-    let resources = renderer.plan().resources.iter();
+    let resources = renderer.plan().memory();
     resources
-        .filter(|(known, _)| *known == name)
+        .filter(|&(known, _)| known == name)
         .map(|(_, bytes)| bytes)
         .sum()
 }

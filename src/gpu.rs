@@ -18,12 +18,13 @@ mod validation;
 
 pub use commands::{Commands, Groups};
 pub use device::{Gpu, Options};
-pub use draw::{Attachments, Draw, Target};
+pub use draw::{Attachments, Draw, MAX_COLORS, Target};
 pub use host::{Enabled, HostBuffer, HostDevice, HostImage, HostImageInfo, ImageState, Loan};
 pub use memory::{Buffer, Image, ImageKind};
 pub use pass::{Bound, ComputePass, GraphicsPass, Sources};
 pub use physical::{DeviceInfo, list_devices};
-pub use pipeline::{GraphicsState, Specialization};
+pub use pipeline::GraphicsState;
 pub use recorder::{Recorder, Timings};
 pub use requirements::{FORMATS, Limits, QUEUE_FLAGS, lacking};
 pub use resources::{Resource, Resources};
+pub use shader::{Constants, is_constant, used};

@@ -8,6 +8,7 @@ pub mod compare;
 #[cfg(feature = "reference")]
 pub mod cpu;
 pub mod error;
+pub mod frame;
 pub mod gpu;
 #[cfg(feature = "reference")]
 pub mod image;

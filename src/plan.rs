@@ -2,59 +2,38 @@
 //! asked for and of the device's limits. What is recorded equals what is planned.
 
 mod camera;
+mod graph;
 mod host;
 mod light;
 mod maps;
 mod memory;
 mod notes;
 mod omissions;
-mod passes;
 mod survey;
 mod text;
 mod views;
 
 use crate::error::Result;
+use crate::frame::{Casters, Front, Graph, Inventory};
 use crate::gpu::Limits;
 use crate::shared;
 use crate::shot::{Settings, Shot};
 use crate::technique::{self, Recipe};
 use camera::Frustum;
-use light::Placed;
-use memory::Inventory;
-use survey::{Survey, survey};
+use light::{Draft, Numbering, Placed};
+use survey::{LightCoverage, survey};
 
 pub use host::{HostFrame, plan_for_host};
-pub use light::{LightPlan, Outcome, Variant, ViewPlan, ViewSet};
+pub use light::{LightPlan, Lighting, ViewPlan, ViewSet};
+pub use memory::PlannedResource;
 pub use notes::shines_along;
-pub use views::{Aspect, Site};
+pub use views::{MapParams, ViewPose};
 
 /// What the caller wants to have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Outputs {
     /// The shaded picture.
     pub picture: bool,
-}
-
-/// Where the visible surface comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Front {
-    /// The scene is drawn.
-    Drawn,
-    /// A host's images are read.
-    Imported,
-}
-
-/// Where the shadow maps come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Casters {
-    /// The scene's triangles, fitted to and drawn.
-    Scene,
-    /// The triangles of a host's meshes, gathered at the start of the frame; then as for a scene.
-    Gathered,
-    /// A host draws them itself.
-    DrawnByHost,
-    /// A host has the maps already.
-    Maps,
 }
 
 /// A frame, completely.
@@ -81,10 +60,11 @@ pub struct Plan {
     pub textured: bool,
     /// The scene has alpha-masked triangles.
     pub masked: bool,
-    /// Names of the passes with the number of times each is recorded, in the order of first recording.
-    pub passes: Vec<(&'static str, u32)>,
-    /// [byte] Name and size of each resource.
-    pub resources: Vec<(&'static str, u64)>,
+    /// All passes of a frame that draws every map.
+    pub graph: Graph,
+    /// The shadow map of the last frame's last view is kept, and the passes that made it are left out.
+    pub retained: bool,
+    pub resources: Vec<PlannedResource>,
     /// What is left out, and why.
     pub omissions: Vec<Omission>,
     /// What will not be as it was asked for, a sentence each.
@@ -100,12 +80,9 @@ pub struct Omission {
 
 /// Plans a frame.
 ///
-/// `retained`: the shadow map of the last frame's last view is still there and nothing that it depends on has
-/// changed since: scene, camera, lights, map size and bias.
-///
 /// # Errors
 /// The shot makes no sense, or exceeds the device's limits; the message says which knob to turn.
-pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> Result<Plan> {
+pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     shot.validate()?;
     let frustum = Frustum::new(shot);
     let mut plan = Plan {
@@ -119,24 +96,35 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits, retained: bool) -> R
             limits,
         )
     };
-    for light in &shot.lights {
+    let cover = |light| {
         let parts = technique::parts(light, &shot.settings.of_light(light));
         let placed = Placed::of_shot(shot, light);
         let look = |side: &_| survey(shot, &frustum, side, &parts, placed.touch);
-        let found: Vec<Survey> = light.sides().iter().map(look).collect();
-        plan.add_light(&shot.settings, &placed, parts, &found);
-        plan.note_light(shot, &placed, &found);
-    }
-    plan.size_map(&shot.settings, limits)?;
-    let retained = retained && plan.views().count() == 1;
-    plan.list_passes(retained);
-    plan.list_resources(&shot.settings, &Inventory::of(&shot.scene));
-    plan.list_omissions(shot, retained);
+        let found: Vec<LightCoverage> = light.sides().iter().map(look).collect();
+        (Draft::new(&shot.settings, placed, parts, &found), found)
+    };
+    let (drafts, found): (Vec<_>, Vec<_>) = shot.lights.iter().map(cover).unzip();
+    plan.add_lights(drafts, &shot.settings, limits)?;
+    plan.note_lights(shot, &found);
+    plan.list_resources(&Inventory::of(&shot.scene));
+    plan.list_omissions(shot);
     plan.check(limits)?;
     Ok(plan)
 }
 
 impl Plan {
+    /// The same frame where the shadow map of the last frame's last view is still there and nothing that it depends on
+    /// has changed since: scene, camera, lights, map size and bias. Several views share a map, which then is drawn anew.
+    #[must_use]
+    pub fn retaining(&self) -> Self {
+        let mut plan = self.clone();
+        plan.retained = self.views().count() == 1;
+        if plan.retained {
+            plan.omit_lasting();
+        }
+        plan
+    }
+
     pub fn views(&self) -> impl Iterator<Item = &ViewPlan> {
         self.lights.iter().flat_map(LightPlan::views)
     }
@@ -154,6 +142,23 @@ impl Plan {
     fn views_mut(&mut self) -> impl Iterator<Item = &mut ViewPlan> {
         let sets = self.lights.iter_mut().flat_map(|light| &mut light.sets);
         sets.flat_map(|set| &mut set.views)
+    }
+
+    /// Sizes the maps for the lights, gives them their views, and puts their passes in order.
+    fn add_lights(
+        &mut self,
+        drafts: Vec<Draft>,
+        settings: &Settings,
+        limits: &Limits,
+    ) -> Result<()> {
+        self.size_map(&drafts, settings, limits)?;
+        let mut numbering = Numbering::default();
+        for (index, draft) in drafts.into_iter().enumerate() {
+            let light = draft.finish(index, self.levels, &mut numbering);
+            self.lights.push(light);
+        }
+        self.graph = self.ordered();
+        Ok(())
     }
 
     /// A plan of a drawn scene, without lights yet.
@@ -178,7 +183,8 @@ impl Plan {
             packet: settings.packet,
             textured: false,
             masked: false,
-            passes: Vec::new(),
+            graph: Graph::default(),
+            retained: false,
             resources: Vec::new(),
             omissions: Vec::new(),
             notes: Vec::new(),

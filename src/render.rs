@@ -1,28 +1,28 @@
 //! The frame: front, technique, back.
 
 mod chain;
+mod constants;
 mod counts;
 mod effect;
 mod notes;
+mod pipelines;
 mod resources;
-mod specialization;
-mod view;
+mod step;
 
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
-use crate::gpu::{
-    Attachments, Buffer, Commands, Draw, Gpu, GraphicsPass, GraphicsState, ImageKind, Recorder,
-    Resources, Timings,
-};
+use crate::frame::back::SHADE;
+use crate::frame::{Scope, Step};
+use crate::gpu::{Buffer, Commands, Gpu, Recorder, Resources, Timings};
 use crate::plan::{Outputs, Plan, plan};
-use crate::shared::{Costs, Counters, Exposure, Fit, Push};
+use crate::shared::{Costs, Counters, Exposure, Fit};
 use crate::shot::Shot;
-use chain::Chain;
-use view::Maps;
+use chain::{Chain, Loans};
+use step::Inputs;
 
 pub use effect::{
-    CasterImages, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, SlotImages, Surface,
+    CasterImages, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, SlotImages,
 };
 
 /// Cost model [Yang09 eq. 6], Q_n = 1. On lavapipe the time hardly depends on it as long as Q_v is not far
@@ -72,7 +72,6 @@ pub struct Renderer {
     fresh: Plan,
     kept: Plan,
     resources: Resources,
-    gbuffer: GraphicsPass,
     chain: Chain,
     recorder: Recorder,
     /// The last frame's map and MSSM are still there.
@@ -93,33 +92,22 @@ impl Renderer {
     /// be had.
     pub fn new(gpu: &Arc<Gpu>, shot: &Shot, options: RenderOptions) -> Result<Self> {
         options.costs.validate()?;
-        let fresh = plan(shot, options.outputs, &gpu.limits, false)?;
-        let kept = plan(shot, options.outputs, &gpu.limits, true)?;
+        let fresh = plan(shot, options.outputs, &gpu.limits)?;
         let plan = &fresh;
         // First, because where nothing can be submitted nothing else is worth its time.
-        let recorded: u32 = plan.passes.iter().map(|(_, count)| count).sum();
-        let recorder = Recorder::new(gpu, recorded)?;
+        let recorder = Recorder::new(gpu, plan.steps().count() as u32)?;
         let exposure = Exposure {
             light_count: plan.lights.len() as u32,
             ..options.exposure
         };
         let resources = resources::create(gpu, plan, shot, options.costs, exposure)?;
-        let chain = Chain::new(gpu, plan, &resources, &[])?;
-        let constants = specialization::of_frame(plan);
-        let state = GraphicsState {
-            vertex: "gbuffer.vert",
-            fragment: Some("gbuffer.frag"),
-            colors: &[ImageKind::Vector, ImageKind::Vector, ImageKind::Color]
-                .map(ImageKind::format),
-            depth: true,
-        };
+        let chain = Chain::new(gpu, plan, &resources, &Loans::default())?;
         let mut renderer = Self {
-            gbuffer: GraphicsPass::new(gpu, "gbuffer", &state, &constants, &resources)?,
             chain,
             recorder,
             gpu: gpu.clone(),
+            kept: fresh.retaining(),
             fresh,
-            kept,
             resources,
             retained: false,
         };
@@ -196,26 +184,21 @@ impl Renderer {
 
     /// `only`: the view to which the frame is limited.
     fn record(&mut self, only: Option<u32>) -> Result<()> {
+        let in_view = |step: &Step| match (only, step.scope) {
+            (Some(only), Scope::View(view)) => view == only,
+            _ => true,
+        };
+        self.record_steps(in_view)
+    }
+
+    fn record_steps(&mut self, wanted: impl Fn(&Step) -> bool) -> Result<()> {
         let plan = match self.retained {
             true => &self.kept,
             false => &self.fresh,
         };
-        let (resources, mut commands) = (&self.resources, self.recorder.commands());
-        let image = |name| Ok(resources.image(name)?.target());
-        let attachments = Attachments {
-            colors: &[
-                image("position_world")?,
-                image("normal_world")?,
-                image("albedo")?,
-            ],
-            depth: Some(image("camera_depth")?),
-            margin: 0,
-        };
-        let vertices = 3 * (plan.frame.opaque_count + plan.frame.masked_count);
-        let draw = (self.gbuffer.with(0), Draw::Vertices(vertices));
-        commands.draw("gbuffer", Push::default(), &attachments, [draw]);
+        let (commands, inputs) = (&mut self.recorder.commands(), &mut Inputs::default());
         self.chain
-            .record(&mut commands, plan, resources, &mut Maps::Own, only)
+            .record(commands, plan, &self.resources, inputs, wanted)
     }
 
     /// The names of the last frame's passes, as recorded.
@@ -296,8 +279,7 @@ impl Renderer {
         }
         self.resources.buffer("visibility")?.upload(visibility)?;
         self.recorder.begin()?;
-        self.chain
-            .record_shade(&mut self.recorder.commands(), &self.fresh);
+        self.record_steps(|step| step.pass.name == SHADE.name)?;
         self.recorder.submit_and_wait()?;
         self.picture()
     }

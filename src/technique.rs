@@ -1,6 +1,6 @@
 //! Techniques: what each publication runs in every view, between the shared front (g-buffer, shadow map,
-//! acceleration structures) and the shared back (resolve, shade). A technique is data, a list of stages: the plan
-//! counts them, the renderer records them. All add to one image of occlusion that `resolve` cannot tell apart.
+//! acceleration structures) and the shared back (resolve, shade). A technique is data, a list of passes: the plan
+//! puts them in order, the renderer records them. All add to one image of occlusion that `resolve` cannot tell apart.
 
 mod bitmask;
 mod depth_peeling;
@@ -12,37 +12,16 @@ mod pcss;
 mod pixel_contour;
 mod reference_maps;
 
+use crate::frame::kernel::{CLASSIFY, KERNELS};
+use crate::frame::{Domain, Pass, Resource};
 use crate::scene::AreaLight;
 use crate::shot::{Settings, Technique};
 use crate::sub_light::{self, Part};
 
-/// One dispatch in every view.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Stage {
-    /// Name in plans, labels, timings and tables; a stage that integrates visibility says so.
-    pub name: &'static str,
-    /// File of the shader.
-    pub shader: &'static str,
-    pub work: Work,
-}
-
-/// What a stage is dispatched over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Work {
-    /// Every pixel, if the view has casters or nothing is accumulated.
-    Pixels,
-    /// Every packet of the image, if the view has casters.
-    Packets,
-    /// The view's list of coherent packets.
-    PacketList,
-    /// The view's list of single pixels.
-    PixelList,
-}
-
 /// A technique with its settings, as what there is to run.
-#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Default)]
 pub struct Recipe {
-    /// Whether the stages read the MSSM: all that have kernels do.
+    /// Whether the passes read the MSSM: all that have kernels do.
     pub mssm: bool,
     /// Whether they read the hierarchical shadow map.
     pub hsm: bool,
@@ -52,7 +31,10 @@ pub struct Recipe {
     pub words: u32,
     /// [turn] Of loops for each cell of the map, at most, where a driver bounds them.
     pub turns: u32,
-    pub stages: Vec<Stage>,
+    /// What runs in each view, between its shadow map and the back, each with the level that it makes.
+    pub passes: Vec<(Pass, u32)>,
+    /// What the technique has for itself.
+    pub resources: &'static [Resource],
 }
 
 impl Recipe {
@@ -71,43 +53,41 @@ impl Recipe {
         }
     }
 
-    /// A kernel for each penumbra pixel, and `stage` over the list of them.
+    /// A kernel for each penumbra pixel, and a pass over the list of them.
     fn over_pixels(name: &'static str, shader: &'static str) -> Self {
-        let stage = Stage {
-            name,
-            shader,
-            work: Work::PixelList,
-        };
+        let pass = Pass::dispatch(name, shader, Domain::PixelList).with(SINGLE);
         Self {
             mssm: true,
             words: 1,
             turns: TURNS_OF_SCANS,
-            stages: vec![KERNELS, CLASSIFY, stage],
+            passes: once([KERNELS, CLASSIFY, pass]),
             ..Self::default()
         }
     }
 
-    /// `stage` over all pixels, testing samples of the map.
+    /// A pass over all pixels that tests samples of the map.
     fn over_samples(name: &'static str, shader: &'static str) -> Self {
-        let stage = Stage {
-            name,
-            shader,
-            work: Work::Pixels,
-        };
         Self {
-            stages: vec![stage],
+            passes: once([Pass::dispatch(name, shader, Domain::Pixels)]),
             ..Self::default()
         }
     }
 
     /// Whether it works off lists of packets or pixels.
     pub fn has_lists(&self) -> bool {
-        self.has(Work::PacketList) || self.has(Work::PixelList)
+        self.has(Domain::PacketList) || self.has(Domain::PixelList)
     }
 
-    pub fn has(&self, work: Work) -> bool {
-        self.stages.iter().any(|stage| stage.work == work)
+    pub fn has(&self, domain: Domain) -> bool {
+        self.passes
+            .iter()
+            .any(|(pass, _)| pass.domain() == Some(domain))
     }
+}
+
+/// Passes that make a single level.
+fn once(passes: impl IntoIterator<Item = Pass>) -> Vec<(Pass, u32)> {
+    passes.into_iter().map(|pass| (pass, 0)).collect()
 }
 
 /// The parts of a light that have views of their own; `settings`: as they run for it.
@@ -123,23 +103,18 @@ const TURNS_OF_SCANS: u32 = 8;
 /// [turn] Of a walk through the MSSM, which passes most cells by.
 const TURNS_OF_WALKS: u32 = 4;
 
-/// The kernels of all pixels, which back-projection techniques share [GBP06, SS07; Yang09 eq. 1].
-const KERNELS: Stage = Stage {
-    name: "kernels",
-    shader: "kernels.comp",
-    work: Work::Pixels,
-};
-
-/// Packets and pixels to their lists [Yang09 §4.3].
-const CLASSIFY: Stage = Stage {
-    name: "classify",
-    shader: "classify.comp",
-    work: Work::Packets,
-};
-
 /// The MSSM walked pixel by pixel [Yang09 §4.2].
-const PIXELS: Stage = Stage {
-    name: "pixel_visibility",
-    shader: "packet_visibility.comp",
-    work: Work::PixelList,
-};
+const PIXELS: Pass = Pass::dispatch(
+    "pixel_visibility",
+    "packet_visibility.comp",
+    Domain::PixelList,
+)
+.with(SINGLE);
+
+/// Whoever works off the pixel list has packets of one pixel.
+const SINGLE: &[(&str, u32)] = &[
+    ("PACKET_WIDTH", 1),
+    ("PACKET_HEIGHT", 1),
+    ("HELD", 1),
+    ("LANES", 0),
+];

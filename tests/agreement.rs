@@ -186,7 +186,7 @@ fn grid_from_close_above_with_side_faces() {
     shot.lights[0].center.y = 1.2;
     with_gpu(|gpu| {
         let outputs = Outputs { picture: false };
-        let plan = plan(&shot, outputs, &gpu.limits, false).expect("a plan");
+        let plan = plan(&shot, outputs, &gpu.limits).expect("a plan");
         let faces = plan.views().count();
         assert!(faces > 1, "only {faces} faces");
         compare(gpu, shot, "grid, side faces", turned(&base, 7));

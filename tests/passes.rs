@@ -34,7 +34,7 @@ const WHOLE_MAP_STEP: u32 = 12;
 type Seen = Option<Receiver>;
 
 fn receivers(traces: &Traces, points: &[Option<Point>]) -> Vec<Seen> {
-    let (view, oblique) = (&traces.planned.view, traces.planned.variant.oblique);
+    let (view, oblique) = (&traces.planned.view, traces.planned.oblique);
     let receiver = |point: &Point| {
         let to_point = point.position - Vec3::from(view.center);
         in_view(view, to_point, point.normal)
@@ -61,7 +61,7 @@ fn check_mssm(traces: &Traces, bits: u32) -> Mssm {
 
 /// The twin's kernels, equal to the device's in every pixel and bit.
 fn check_kernels(traces: &Traces, receivers: &[Seen], mssm: &Mssm) -> Vec<Kernel> {
-    let (view, oblique) = (&traces.planned.view, traces.planned.variant.oblique);
+    let (view, oblique) = (&traces.planned.view, traces.planned.oblique);
     let map = ShadowMap {
         size: MAP as i32,
         depths: &traces.map,
@@ -187,7 +187,7 @@ fn check_integration(
         size: MAP as i32,
         depths: &traces.map,
     };
-    let round = traces.planned.variant.round;
+    let round = traces.planned.is_round();
     let light = SubLight::new(&traces.planned.view, &traces.fit, round, map);
     // The device's area is the end of a table in f32.
     assert!((light.area() - f64::from(area)).abs() < 1e-5, "area {area}");

@@ -84,9 +84,11 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
 
 /// Compares with `tests/plans/{name}.txt`, or writes it.
 fn check(name: &str, shot: &Shot, outputs: Outputs, retained: bool) {
-    let text = plan(shot, outputs, &LIMITS, retained)
-        .expect("a shot that can be planned")
-        .to_string();
+    let mut planned = plan(shot, outputs, &LIMITS).expect("a shot that can be planned");
+    if retained {
+        planned = planned.retaining();
+    }
+    let text = planned.to_string();
     let file = root().join(format!("tests/plans/{name}.txt"));
     if std::env::var_os("UPDATE_GOLDENS").is_some() {
         write(&file, &text);
@@ -171,7 +173,7 @@ fn limits_are_told_with_the_knob_to_turn() {
         image_side: 256,
         ..LIMITS
     };
-    let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
+    let error = plan(&scene("plate"), EVERYTHING, &limits).unwrap_err();
     assert!(error.to_string().contains("--map"), "{error}");
     for (limits, source) in [
         (
@@ -189,11 +191,11 @@ fn limits_are_told_with_the_knob_to_turn() {
             "--max-memory allows 1.0 MiB; choose a smaller --map or --size, or --mssm-bits 16, or raise --max-memory",
         ),
     ] {
-        let error = plan(&scene("plate"), EVERYTHING, &limits, false).unwrap_err();
+        let error = plan(&scene("plate"), EVERYTHING, &limits).unwrap_err();
         assert!(error.to_string().contains(source), "{error}");
     }
     // Exactly what it takes is enough, and a byte less is not.
-    let peak = plan(&scene("plate"), EVERYTHING, &LIMITS, false)
+    let peak = plan(&scene("plate"), EVERYTHING, &LIMITS)
         .unwrap()
         .peak_bytes();
     for (allowed_bytes, fits) in [(peak, true), (peak - 1, false)] {
@@ -201,9 +203,6 @@ fn limits_are_told_with_the_knob_to_turn() {
             allowed_bytes,
             ..LIMITS
         };
-        assert_eq!(
-            plan(&scene("plate"), EVERYTHING, &limits, false).is_ok(),
-            fits
-        );
+        assert_eq!(plan(&scene("plate"), EVERYTHING, &limits).is_ok(), fits);
     }
 }

@@ -182,7 +182,7 @@ pub unsafe extern "C" fn hs_renderer_statistics(
             next: target.next,
             device_ms: frame.timings.ms(|_| true),
             memory_bytes: frame.plan.memory_bytes(),
-            pass_count: frame.plan.passes.len() as u32,
+            pass_count: frame.plan.passes().len() as u32,
             view_count: frame.plan.views().count() as u32,
             views_with_receivers: count(|fit| fit.receiver_count > 0),
             views_with_casters: count(|fit| fit.level_count > 0),
@@ -217,8 +217,9 @@ pub unsafe extern "C" fn hs_renderer_pass(
         // SAFETY: the caller's promise.
         let target = unsafe { output(pass) }?;
         let frame = rendering.frame()?;
-        let count = frame.plan.passes.len();
-        let &(name, times) = frame.plan.passes.get(index as usize).ok_or_else(|| {
+        let passes = frame.plan.passes();
+        let count = passes.len();
+        let &(name, times) = passes.get(index as usize).ok_or_else(|| {
             Fault::invalid(format!("there is no pass {index}; the frame has {count}"))
         })?;
         write_text(&mut target.name, name);

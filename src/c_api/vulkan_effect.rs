@@ -9,8 +9,9 @@ use super::vulkan_frame::record;
 use super::vulkan_lend::{mesh_of, slot_of};
 use super::vulkan_names::*;
 use super::vulkan_types::*;
-use crate::plan::{Casters, HostFrame};
-use crate::render::{DEFAULT_COSTS, Effect, Surface};
+use crate::frame::{Casters, Surface};
+use crate::plan::HostFrame;
+use crate::render::{DEFAULT_COSTS, Effect};
 use crate::shared::{Costs, NORMAL_OCTAHEDRAL, NORMAL_SIGNED, NORMAL_UNSIGNED, Projection};
 use crate::shot::{Settings, Technique};
 
@@ -52,8 +53,10 @@ pub unsafe extern "C" fn hs_vk_effect_create(
             None => Settings::usual(Technique::PacketContour),
         };
         let all = [Casters::Gathered, Casters::DrawnByHost, Casters::Maps];
+        let surfaces = [Surface::Depths, Surface::Positions];
         let host = HostFrame {
             size: (info.width, info.height),
+            surface: choice(&surfaces, info.surface, "surface")?,
             light: convert::light(&unsafe { input(info.light) }?)?,
             settings,
             casters: choice(&all, info.casters, "casters")?,
@@ -62,11 +65,6 @@ pub unsafe extern "C" fn hs_vk_effect_create(
             vertices: info.vertex_max,
             triangles: info.triangle_max,
         };
-        let surface = choice(
-            &[Surface::Depths, Surface::Positions],
-            info.surface,
-            "surface",
-        )?;
         let encodings = [NORMAL_SIGNED, NORMAL_UNSIGNED, NORMAL_OCTAHEDRAL];
         let or = |given: f32, usual: f32| if given == 0.0 { usual } else { given };
         let costs = Costs {
@@ -74,7 +72,7 @@ pub unsafe extern "C" fn hs_vk_effect_create(
             visibility: or(info.visibility_cost, DEFAULT_COSTS.visibility),
         };
         let frames = Frames {
-            effect: Effect::new(context.gpu()?, host, surface, costs)?,
+            effect: Effect::new(context.gpu()?, host, costs)?,
             normals: choice(&encodings, info.normals, "normals")?,
         };
         *target = EFFECTS.add(Held::new(&context, frames))?;
@@ -176,7 +174,7 @@ pub unsafe extern "C" fn hs_vk_effect_describe(
         target.projections = frames.effect.projections();
         target.projection_stride = size_of::<Projection>() as u32;
         target.view_count = plan.views().count() as u32;
-        target.pass_count = plan.passes.iter().map(|(_, count)| count).sum();
+        target.pass_count = plan.steps().count() as u32;
         target.prepared = u32::from(frames.effect.is_prepared());
         Ok(())
     })

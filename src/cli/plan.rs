@@ -37,7 +37,7 @@ pub fn run(args: &Args, given: &Given) -> Result<()> {
         let outputs = Outputs {
             picture: !args.visibility_only,
         };
-        let plan = plan(&shot, outputs, &gpu.limits, false)?;
+        let plan = plan(&shot, outputs, &gpu.limits)?;
         plan.notes.iter().for_each(|note| print_note(note));
         super::print(&plan.to_string())
     })

@@ -79,12 +79,12 @@ impl Stats {
             let counts = |pass: &str| name.is_none_or(|name| name == pass);
             Spread::of(frames.iter().map(|(frame, _)| frame.timings.ms(counts)))
         };
-        let passes = plan.passes.iter().map(|&(name, count)| PassStats {
+        let passes = plan.passes().into_iter().map(|(name, count)| PassStats {
             name: name.into(),
             count,
             gpu_ms: over(Some(name)),
         });
-        let mut memory_bytes: BTreeMap<_, _> = plan.resources.iter().copied().collect();
+        let mut memory_bytes: BTreeMap<_, _> = plan.memory().collect();
         memory_bytes.insert("peak", plan.memory_bytes());
         let last = frames.last().map(|(_, before)| *before).unwrap_or_default();
         let counters = counted.then(|| renderer.counters()).transpose()?;

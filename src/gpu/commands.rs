@@ -197,7 +197,7 @@ impl<'a> Commands<'a> {
     }
 
     /// Fills buffers with zeros.
-    pub fn clear(&mut self, name: &'static str, buffers: &[&Buffer]) {
+    pub fn clear<'b>(&mut self, name: &'static str, buffers: impl IntoIterator<Item = &'b Buffer>) {
         self.pass(name, |device, commands| {
             for buffer in buffers {
                 // SAFETY: recording; the buffer is alive.
@@ -207,7 +207,11 @@ impl<'a> Commands<'a> {
     }
 
     /// Writes values that the command buffer carries to the start of buffers; multiples of 4 bytes.
-    pub fn update(&mut self, name: &'static str, updates: &[(&Buffer, &[u8])]) {
+    pub fn update<'b>(
+        &mut self,
+        name: &'static str,
+        updates: impl IntoIterator<Item = (&'b Buffer, &'b [u8])>,
+    ) {
         /// [byte] What a single command may carry.
         const CHUNK: usize = 65536;
         self.pass(name, |device, commands| {

@@ -36,7 +36,7 @@ pub struct Attachments<'a> {
 }
 
 /// Most colours that are drawn to at a time.
-const MAX_COLORS: usize = 4;
+pub const MAX_COLORS: usize = 4;
 
 fn attach(target: Target) -> vk::RenderingAttachmentInfo<'static> {
     vk::RenderingAttachmentInfo::default()

@@ -7,11 +7,9 @@ use ash::vk;
 
 use super::device::{Gpu, failed};
 use super::host::HostImage;
-use super::pipeline::{
-    GraphicsState, Specialization, create_compute_pipeline, create_graphics_pipeline,
-};
+use super::pipeline::{GraphicsState, create_compute_pipeline, create_graphics_pipeline};
 use super::resources::{Resource, Resources};
-use super::shader::{Binding, BindingKind, Shader};
+use super::shader::{Binding, BindingKind, Constants, Shader};
 use crate::error::{Error, Result};
 use crate::shared::Push;
 
@@ -81,10 +79,10 @@ impl ComputePass {
         gpu: &Arc<Gpu>,
         name: &str,
         shader: &str,
-        specialization: &Specialization,
+        constants: &Constants,
         resources: &Resources,
     ) -> Result<Self> {
-        Self::with_each(gpu, name, shader, specialization, &[&[resources]])
+        Self::with_each(gpu, name, shader, constants, &[&[resources]])
     }
 
     /// A pass that can be recorded with each of several lists of resources.
@@ -95,13 +93,13 @@ impl ComputePass {
         gpu: &Arc<Gpu>,
         name: &str,
         shader: &str,
-        specialization: &Specialization,
+        constants: &Constants,
         lists: &[&Sources],
     ) -> Result<Self> {
         let shader = Shader::find(shader)?;
         let stages = vk::ShaderStageFlags::COMPUTE;
         let mut pass = Pass::bind(gpu, name, &[shader], lists, stages)?;
-        pass.pipeline = create_compute_pipeline(gpu, name, shader, specialization, pass.layout)?;
+        pass.pipeline = create_compute_pipeline(gpu, name, shader, constants, pass.layout)?;
         gpu.name(pass.pipeline, name);
         Ok(Self(pass))
     }
@@ -118,10 +116,10 @@ impl GraphicsPass {
         gpu: &Arc<Gpu>,
         name: &str,
         state: &GraphicsState,
-        specialization: &Specialization,
+        constants: &Constants,
         resources: &Resources,
     ) -> Result<Self> {
-        Self::with_each(gpu, name, state, specialization, &[&[resources]])
+        Self::with_each(gpu, name, state, constants, &[&[resources]])
     }
 
     /// As `ComputePass::with_each`.
@@ -129,7 +127,7 @@ impl GraphicsPass {
         gpu: &Arc<Gpu>,
         name: &str,
         state: &GraphicsState,
-        specialization: &Specialization,
+        constants: &Constants,
         lists: &[&Sources],
     ) -> Result<Self> {
         let vertex = Shader::find(state.vertex)?;
@@ -137,15 +135,8 @@ impl GraphicsPass {
         let shaders: Vec<&Shader> = [Some(vertex), fragment].into_iter().flatten().collect();
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
         let mut pass = Pass::bind(gpu, name, &shaders, lists, stages)?;
-        pass.pipeline = create_graphics_pipeline(
-            gpu,
-            name,
-            state,
-            vertex,
-            fragment,
-            specialization,
-            pass.layout,
-        )?;
+        pass.pipeline =
+            create_graphics_pipeline(gpu, name, state, vertex, fragment, constants, pass.layout)?;
         gpu.name(pass.pipeline, name);
         Ok(Self(pass))
     }

@@ -4,11 +4,8 @@ use ash::vk;
 
 use super::device::{Gpu, failed};
 use super::memory::ImageKind;
-use super::shader::Shader;
+use super::shader::{Constants, Shader};
 use crate::error::Result;
-
-/// Values of specialization constants: (constant id, value).
-pub type Specialization = Vec<(u32, u32)>;
 
 /// The fixed part of a graphics pipeline. Triangles are filled and not culled; depth is reverse-Z.
 pub struct GraphicsState<'a> {
@@ -25,11 +22,11 @@ pub(super) fn create_compute_pipeline(
     gpu: &Gpu,
     name: &str,
     shader: &Shader,
-    specialization: &Specialization,
+    constants: &Constants,
     layout: vk::PipelineLayout,
 ) -> Result<vk::Pipeline> {
     let module = Module::new(gpu, shader)?;
-    let constants = Constants::new(specialization);
+    let constants = Specialization::new(shader, constants);
     let constants = constants.info();
     let stage = module.stage(vk::ShaderStageFlags::COMPUTE, &constants);
     let info = vk::ComputePipelineCreateInfo::default()
@@ -51,20 +48,21 @@ pub(super) fn create_graphics_pipeline(
     state: &GraphicsState,
     vertex: &Shader,
     fragment: Option<&Shader>,
-    specialization: &Specialization,
+    constants: &Constants,
     layout: vk::PipelineLayout,
 ) -> Result<vk::Pipeline> {
-    let constants = Constants::new(specialization);
-    let constants = constants.info();
+    let of_vertex = Specialization::new(vertex, constants);
+    let of_fragment = fragment.map(|shader| Specialization::new(shader, constants));
+    let of_vertex = of_vertex.info();
+    let of_fragment = of_fragment.as_ref().map(Specialization::info);
     let vertex = Module::new(gpu, vertex)?;
     let fragment = fragment
         .map(|shader| Module::new(gpu, shader))
         .transpose()?;
-    let mut stages = vec![vertex.stage(vk::ShaderStageFlags::VERTEX, &constants)];
+    let mut stages = vec![vertex.stage(vk::ShaderStageFlags::VERTEX, &of_vertex)];
+    let fragment = fragment.as_ref().zip(of_fragment.as_ref());
     stages.extend(
-        fragment
-            .as_ref()
-            .map(|module| module.stage(vk::ShaderStageFlags::FRAGMENT, &constants)),
+        fragment.map(|(module, constants)| module.stage(vk::ShaderStageFlags::FRAGMENT, constants)),
     );
     let mut rendering =
         vk::PipelineRenderingCreateInfo::default().color_attachment_formats(state.colors);
@@ -156,21 +154,23 @@ impl Drop for Module<'_> {
     }
 }
 
-struct Constants {
+/// The constants of a shader as Vulkan takes them.
+struct Specialization {
     entries: Vec<vk::SpecializationMapEntry>,
     values: Vec<u32>,
 }
 
-impl Constants {
-    fn new(specialization: &Specialization) -> Self {
+impl Specialization {
+    fn new(shader: &Shader, constants: &Constants) -> Self {
+        let constants = shader.constants_by_id(constants);
         let entry = |(i, &(id, _)): (usize, &(u32, u32))| vk::SpecializationMapEntry {
             constant_id: id,
             offset: 4 * i as u32,
             size: 4,
         };
         Self {
-            entries: specialization.iter().enumerate().map(entry).collect(),
-            values: specialization.iter().map(|&(_, value)| value).collect(),
+            entries: constants.iter().enumerate().map(entry).collect(),
+            values: constants.iter().map(|&(_, value)| value).collect(),
         }
     }
 

@@ -62,6 +62,15 @@ impl Resources {
         }
     }
 
+    /// Errors: one of these is no buffer.
+    pub fn check_buffers<'n>(
+        &self,
+        names: impl IntoIterator<Item = &'n &'static str>,
+    ) -> Result<()> {
+        let mut names = names.into_iter();
+        names.try_for_each(|name| self.buffer(name).map(drop))
+    }
+
     pub fn images(&self) -> impl Iterator<Item = &Image> {
         self.0.values().filter_map(|resource| match resource {
             Resource::Image(image) => Some(image),

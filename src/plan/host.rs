@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::light::Placed;
-use super::memory::Inventory;
-use super::survey::Survey;
+use super::light::{Draft, Placed};
+use super::survey::LightCoverage;
 use super::views::whole_light;
-use super::{Casters, Front, Outputs, Plan};
+use super::{Outputs, Plan};
 use crate::error::{Error, Result};
+use crate::frame::{Casters, Front, Inventory, Surface};
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
 use crate::shared;
@@ -19,6 +19,7 @@ use crate::technique::{self, Recipe};
 pub struct HostFrame {
     /// [pixel]
     pub size: (u32, u32),
+    pub surface: Surface,
     /// Its shape counts, and whether it has extent; where it stands comes with each frame.
     pub light: AreaLight,
     pub settings: Settings,
@@ -77,11 +78,11 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     };
     let outputs = Outputs { picture: false };
     let mut plan = Plan {
-        front: Front::Imported,
+        front: Front::Imported(host.surface),
         casters: host.casters,
         ..Plan::empty(host.size, frame, outputs, settings, limits)
     };
-    let found = Survey {
+    let found = LightCoverage {
         receivers: true,
         casters: true,
         tangents: [if host.side_faces { f64::INFINITY } else { 0.0 }; 4],
@@ -90,22 +91,19 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     };
     let parts = technique::parts(&host.light, &settings.of_light(&host.light));
     let found = vec![found; host.light.sides().len()];
-    plan.add_light(settings, &placed(&host.light), parts, &found);
+    let draft = Draft::new(settings, placed(&host.light), parts, &found);
+    plan.add_lights(vec![draft], settings, limits)?;
     if host.casters == Casters::Maps {
         // A host's map may be turned any way.
-        for view in plan.views_mut() {
-            view.variant.oblique = true;
-        }
+        plan.views_mut().for_each(|view| view.oblique = true);
     }
-    plan.size_map(settings, limits)?;
-    plan.list_passes(false);
     let inventory = Inventory {
         vertices: host.vertices.into(),
         triangles: host.triangles.into(),
         instances: host.instances.into(),
         ..Inventory::default()
     };
-    plan.list_resources(settings, &inventory);
+    plan.list_resources(&inventory);
     plan.check(limits)?;
     Ok(plan)
 }
@@ -121,7 +119,7 @@ fn placed(light: &AreaLight) -> Placed<'_> {
 }
 
 impl Plan {
-    /// Moves the light of a host's frame, and its views, to where they stand now. Takes no memory.
+    /// Moves the light of a host's frame, and its views, to where they stand now. Does not allocate.
     ///
     /// # Errors
     /// The light is of another shape than the one that was planned.
@@ -142,10 +140,10 @@ impl Plan {
             let weight_sum = planned.light.weight_sum;
             planned.light = whole_light(placed.origin, light, placed.intensity, weight_sum, views);
             for set in &mut planned.sets {
-                let site = placed.site(&set.settings, self.levels);
+                let params = placed.map_params(&set.settings, self.levels);
                 for view in &mut set.views {
                     let sector_first = view.view.sector_first;
-                    view.view = view.aspect.view(&site, light, sector_first);
+                    view.view = view.pose.view(&params, light, sector_first);
                 }
             }
         }

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::Plan;
-use super::survey::Survey;
-use super::views::{self, Aspect, Site};
+use super::survey::LightCoverage;
+use super::views::{self, MapParams, ViewPose};
 use crate::scene::AreaLight;
-use crate::shared::{self, FRONT_REACH, SECTOR_STEPS, View};
+use crate::shared::{self, FRONT_REACH, View};
 use crate::shot::{Settings, Shot, Technique};
 use crate::sub_light::{Part, evenly_spread};
 use crate::technique::Recipe;
@@ -22,7 +21,7 @@ const POINT_REACH: f32 = 4.0;
 pub struct LightPlan {
     pub name: String,
     pub light: shared::Light,
-    pub outcome: Outcome,
+    pub lighting: Lighting,
     /// None without views.
     pub sets: Vec<ViewSet>,
     /// [sub-light] In how many parts the light is cut, and how many of them points stand for.
@@ -59,7 +58,7 @@ impl LightPlan {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Lighting {
     /// Nothing visible is lit by it: visibility 0.
     Dark,
     /// Nothing can cast a shadow: visibility 1 where it shines.
@@ -72,22 +71,19 @@ pub enum Outcome {
 #[derive(Debug, Clone)]
 pub struct ViewPlan {
     pub view: View,
-    pub variant: Variant,
+    /// What the view was planned from.
+    pub pose: ViewPose,
     /// Sector table of a sub-light that a disc's rim cuts.
     pub sectors: Option<Arc<[f32]>>,
-    /// What the view was planned from.
-    pub aspect: Aspect,
-}
-
-/// Which pipelines a view needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Variant {
-    /// A disc's rim cuts the sub-light.
-    pub round: bool,
     /// The map is not parallel to the light.
     pub oblique: bool,
-    /// The light has more than one view.
-    pub accumulate: bool,
+}
+
+impl ViewPlan {
+    /// Whether a disc's rim cuts the sub-light.
+    pub fn is_round(&self) -> bool {
+        self.sectors.is_some()
+    }
 }
 
 /// A light where it stands.
@@ -112,8 +108,8 @@ impl<'a> Placed<'a> {
     }
 
     /// `settings`: as they run in the light's views.
-    pub fn site(&self, settings: &Settings, levels: u32) -> Site {
-        Site {
+    pub fn map_params(&self, settings: &Settings, levels: u32) -> MapParams {
+        MapParams {
             origin: self.origin,
             map: settings.map,
             bias: settings.bias(),
@@ -123,22 +119,47 @@ impl<'a> Placed<'a> {
     }
 }
 
-impl Plan {
+/// A light before it is known how large the maps and hierarchies of all lights are.
+pub(super) struct Draft<'a> {
+    placed: Placed<'a>,
+    lighting: Lighting,
+    sets: Vec<DraftSet>,
+    part_count: usize,
+    near_count: usize,
+    /// See [`views::weight_sum`].
+    weight_sum: f32,
+}
+
+/// Views that run the same, before they have maps.
+pub(super) struct DraftSet {
+    settings: Settings,
+    pub recipe: Recipe,
+    poses: Vec<ViewPose>,
+}
+
+/// What has been given away to the lights before.
+#[derive(Default)]
+pub(super) struct Numbering {
+    views: u32,
+    /// [entry] Of the sector tables.
+    sectors: u32,
+}
+
+impl<'a> Draft<'a> {
     /// `parts`: of the light as it is cut by settings as they run for it; `found`: for each side that it shines to.
-    pub(super) fn add_light(
-        &mut self,
+    pub fn new(
         settings: &Settings,
-        placed: &Placed,
+        placed: Placed<'a>,
         parts: Vec<Part>,
-        found: &[Survey],
-    ) {
-        let outcome = match (
+        found: &[LightCoverage],
+    ) -> Self {
+        let lighting = match (
             found.iter().any(|side| side.receivers),
             found.iter().any(|side| side.casters),
         ) {
-            (false, _) => Outcome::Dark,
-            (_, false) => Outcome::Unshadowed,
-            _ => Outcome::Shadowed,
+            (false, _) => Lighting::Dark,
+            (_, false) => Lighting::Unshadowed,
+            _ => Lighting::Shadowed,
         };
         let settings = settings.of_light(placed.light);
         let (near, near_count): (&[bool], _) = match settings.has_near_points() {
@@ -147,91 +168,102 @@ impl Plan {
         };
         let part_count = parts.len();
         let sampled = sampled(settings, parts, near, found[0].faces(POINT_REACH).len());
-        let weight_sum = views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts));
-        let view_first = self.views().count() as u32;
-        let sets = self.view_sets(placed, &sampled, found);
-        let view_count: usize = sets.iter().map(|set| set.views.len()).sum();
-        let view_range = view_first..view_first + view_count as u32;
-        let light = placed.light;
-        let name = match light.name.as_str() {
-            "" => format!("light {}", self.lights.len()),
-            name => name.to_owned(),
-        };
-        let intensity = placed.intensity;
-        self.lights.push(LightPlan {
-            name,
-            light: views::whole_light(placed.origin, light, intensity, weight_sum, view_range),
-            outcome,
-            sets,
+        Self {
+            placed,
+            lighting,
+            sets: draft_sets(&sampled, found),
             part_count,
             near_count,
-        });
+            weight_sum: views::weight_sum(sampled.iter().flat_map(|(_, parts)| parts)),
+        }
     }
 
-    fn view_sets<'s>(
-        &self,
-        placed: &Placed,
-        sampled: &'s [(Settings, Vec<Part>)],
-        found: &[Survey],
-    ) -> Vec<ViewSet> {
-        let tables = self.views().filter(|view| view.sectors.is_some()).count() as u32;
-        let mut sector_first = tables * (SECTOR_STEPS + 1);
-        // A side without casters has no shadow on it.
-        let sides = found.iter().enumerate().filter(|(_, side)| side.casters);
-        let sets: Vec<(&Settings, Vec<Aspect>)> = sides
-            .flat_map(|(index, side)| {
-                let aspects = move |(settings, parts): &'s (Settings, Vec<Part>)| {
-                    (settings, aspects(settings, parts, side, index > 0))
-                };
-                sampled.iter().map(aspects)
-            })
-            .collect();
-        let accumulate = sets.iter().map(|(_, aspects)| aspects.len()).sum::<usize>() > 1;
-        let set = |(settings, aspects): (&Settings, Vec<Aspect>)| {
-            let site = placed.site(settings, 0);
-            let view = |aspect: Aspect| {
-                let sectors = aspect.sectors();
-                let mut view = aspect.view(&site, placed.light, 0);
-                if let Some(table) = &sectors {
-                    view.sector_first = sector_first;
-                    sector_first += table.len() as u32;
-                }
+    /// None without views.
+    pub fn sets(&self) -> &[DraftSet] {
+        &self.sets
+    }
+
+    /// The light with all its views. `levels`: of the MSSM that there is memory for.
+    pub fn finish(self, index: usize, levels: u32, numbering: &mut Numbering) -> LightPlan {
+        let (placed, view_first) = (self.placed, numbering.views);
+        let set = |set: DraftSet| {
+            let params = placed.map_params(&set.settings, levels);
+            let view = |pose: ViewPose| {
+                let sectors = pose.sectors();
+                let view = pose.view(&params, placed.light, numbering.sectors);
+                numbering.views += 1;
+                numbering.sectors += sectors.as_ref().map_or(0, |table| table.len() as u32);
                 ViewPlan {
                     view,
-                    variant: Variant {
-                        round: sectors.is_some(),
-                        oblique: aspect.face != 0,
-                        accumulate,
-                    },
                     sectors,
-                    aspect,
+                    oblique: pose.face != 0,
+                    pose,
                 }
             };
             ViewSet {
-                views: aspects.into_iter().map(view).collect(),
-                recipe: Recipe::new(settings),
-                settings: settings.clone(),
+                views: set.poses.into_iter().map(view).collect(),
+                recipe: set.recipe,
+                settings: set.settings,
             }
         };
-        sets.into_iter().map(set).collect()
+        let sets = self.sets.into_iter().map(set).collect();
+        let light = placed.light;
+        let name = match light.name.as_str() {
+            "" => format!("light {index}"),
+            name => name.to_owned(),
+        };
+        let views = view_first..numbering.views;
+        LightPlan {
+            name,
+            light: views::whole_light(
+                placed.origin,
+                light,
+                placed.intensity,
+                self.weight_sum,
+                views,
+            ),
+            lighting: self.lighting,
+            sets,
+            part_count: self.part_count,
+            near_count: self.near_count,
+        }
     }
 }
 
+fn draft_sets(sampled: &[(Settings, Vec<Part>)], found: &[LightCoverage]) -> Vec<DraftSet> {
+    // A side without casters has no shadow on it.
+    let sides = found.iter().enumerate().filter(|(_, side)| side.casters);
+    let set = |(index, side): (usize, &LightCoverage)| {
+        let set = move |(settings, parts): &(Settings, Vec<Part>)| DraftSet {
+            settings: settings.clone(),
+            recipe: Recipe::new(settings),
+            poses: poses(settings, parts, side, index > 0),
+        };
+        sampled.iter().map(set).collect::<Vec<_>>()
+    };
+    sides.flat_map(set).collect()
+}
+
 /// Each of the parts, towards each face that may have receivers.
-fn aspects(settings: &Settings, parts: &[Part], found: &Survey, turned: bool) -> Vec<Aspect> {
+fn poses(
+    settings: &Settings,
+    parts: &[Part],
+    found: &LightCoverage,
+    turned: bool,
+) -> Vec<ViewPose> {
     let faces = found.faces(reach(settings));
     let reach = match faces.len() {
         1 => f32::MAX,
         _ => reach(settings),
     };
     let of_part = |part: &Part| {
-        let aspect = |&face: &usize| Aspect {
+        let pose = |&face: &usize| ViewPose {
             part: part.clone(),
             face,
             turned,
             reach,
         };
-        faces.iter().map(aspect).collect::<Vec<_>>()
+        faces.iter().map(pose).collect::<Vec<_>>()
     };
     parts.iter().flat_map(of_part).collect()
 }

@@ -1,6 +1,7 @@
 //! The sizes of the shadow map and of the hierarchies over it, and how often a driver has to be asked to walk them.
 
 use super::Plan;
+use super::light::Draft;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::shared::{LEVELS_MAX, ROOT_LEVELS};
@@ -13,8 +14,14 @@ pub(super) fn mssm_levels(side: u32) -> u32 {
 }
 
 impl Plan {
-    pub(super) fn size_map(&mut self, settings: &Settings, limits: &Limits) -> Result<()> {
-        if self.views().next().is_none() {
+    pub(super) fn size_map(
+        &mut self,
+        drafts: &[Draft],
+        settings: &Settings,
+        limits: &Limits,
+    ) -> Result<()> {
+        let mut sets = drafts.iter().flat_map(Draft::sets).peekable();
+        if sets.peek().is_none() {
             return Ok(());
         }
         let side = settings.map;
@@ -25,33 +32,30 @@ impl Plan {
             )));
         }
         self.map = side;
-        if self.needs(|recipe| recipe.mssm) {
-            let level_bytes = u64::from(side) * u64::from(side) * self.mssm_texel_bytes();
-            let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
-            self.levels = mssm_levels(side).min(LEVELS_MAX).min(fitting as u32);
-            if self.levels == 0 {
-                return Err(Error::Unsupported(format!(
-                    "an MSSM level of {level_bytes} bytes is more than the device's largest image of {} bytes; \
-                     choose a smaller --map",
-                    limits.image_bytes
-                )));
-            }
-        }
-        let levels = self.levels;
-        for view in self.views_mut() {
-            view.view.levels_max = levels.max(1);
+        if sets.any(|set| set.recipe.mssm) {
+            self.levels = self.fitting_levels(limits)?;
         }
         Ok(())
     }
 
-    /// [byte] Of a pair of bounds.
-    pub(crate) fn mssm_texel_bytes(&self) -> u64 {
-        u64::from(self.mssm_bits / 4)
+    /// [level] Of the MSSM that the device has room for.
+    fn fitting_levels(&self, limits: &Limits) -> Result<u32> {
+        let side = self.map;
+        let level_bytes = u64::from(side) * u64::from(side) * self.mssm_texel_bytes();
+        let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
+        match mssm_levels(side).min(LEVELS_MAX).min(fitting as u32) {
+            0 => Err(Error::Unsupported(format!(
+                "an MSSM level of {level_bytes} bytes is more than the device's largest image of {} bytes; \
+                 choose a smaller --map",
+                limits.image_bytes
+            ))),
+            levels => Ok(levels),
+        }
     }
 
-    /// [level] Of the hierarchical shadow map, from 2×2 texels to a single node.
-    pub fn hsm_levels(&self) -> u32 {
-        self.map.next_power_of_two().ilog2()
+    /// [byte] Of a pair of bounds.
+    fn mssm_texel_bytes(&self) -> u64 {
+        u64::from(self.mssm_bits / 4)
     }
 
     /// [dispatch] In how many rounds a list is worked off at most.

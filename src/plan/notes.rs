@@ -1,8 +1,9 @@
 //! What will not be as it was asked for, a sentence each.
 
 use super::light::Placed;
-use super::survey::Survey;
-use super::{LightPlan, Outcome, Plan};
+use super::survey::LightCoverage;
+use super::{LightPlan, Lighting, Plan};
+use crate::scene::AreaLight;
 use crate::shared::BIAS_ROUNDING;
 use crate::shot::{Settings, Shot};
 
@@ -16,21 +17,31 @@ const FEW_POINTS: usize = 200;
 const ROUNDINGS: f64 = 3.0;
 
 impl Plan {
-    /// Notes on the light that was planned last; `found`: on each side of it.
-    pub(super) fn note_light(&mut self, shot: &Shot, placed: &Placed, found: &[Survey]) {
-        let settings = shot.settings.of_light(placed.light);
-        let Some(planned) = self.lights.last() else {
-            return;
-        };
-        let notes = [
-            lights_nothing(planned),
-            integrates_near_occluders(planned, &settings, found),
-            has_few_points(planned),
-            touches(planned, placed, found),
-            is_far(planned, shot, placed),
-        ];
-        self.notes.extend(notes.into_iter().flatten());
+    /// Notes on all lights; `found`: on each side of each.
+    pub(super) fn note_lights(&mut self, shot: &Shot, found: &[Vec<LightCoverage>]) {
+        let lights = shot.lights.iter().zip(&self.lights).zip(found);
+        let notes = lights.flat_map(|((light, planned), found)| notes(shot, light, planned, found));
+        self.notes.extend(notes.collect::<Vec<_>>());
     }
+}
+
+/// Notes on a light.
+fn notes(
+    shot: &Shot,
+    light: &AreaLight,
+    planned: &LightPlan,
+    found: &[LightCoverage],
+) -> Vec<String> {
+    let (settings, placed) = (shot.settings.of_light(light), Placed::of_shot(shot, light));
+    let placed = &placed;
+    let notes = [
+        lights_nothing(planned),
+        integrates_near_occluders(planned, &settings, found),
+        has_few_points(planned),
+        touches(planned, placed, found),
+        is_far(planned, shot, placed),
+    ];
+    notes.into_iter().flatten().collect()
 }
 
 /// Where a light shines to, for people.
@@ -41,7 +52,7 @@ pub fn shines_along(planned: &LightPlan) -> String {
 
 fn lights_nothing(planned: &LightPlan) -> Option<String> {
     let name = &planned.name;
-    (planned.outcome == Outcome::Dark).then(|| {
+    (planned.lighting == Lighting::Dark).then(|| {
         format!(
             "{name} lights nothing that the camera sees: {}; if that is the wrong way, swap its u and v or turn its normal.",
             shines_along(planned)
@@ -52,9 +63,9 @@ fn lights_nothing(planned: &LightPlan) -> Option<String> {
 fn integrates_near_occluders(
     planned: &LightPlan,
     settings: &Settings,
-    found: &[Survey],
+    found: &[LightCoverage],
 ) -> Option<String> {
-    let near: usize = found.iter().map(Survey::near_count).sum();
+    let near: usize = found.iter().map(LightCoverage::near_count).sum();
     let integrated = planned.sets.iter().any(|set| set.settings == *settings);
     let (name, technique) = (&planned.name, settings.technique);
     (near > 0 && integrated && !settings.has_near_points() && !settings.samples_points()).then(|| {
@@ -81,7 +92,7 @@ fn has_few_points(planned: &LightPlan) -> Option<String> {
     })
 }
 
-fn touches(planned: &LightPlan, placed: &Placed, found: &[Survey]) -> Option<String> {
+fn touches(planned: &LightPlan, placed: &Placed, found: &[LightCoverage]) -> Option<String> {
     let name = &planned.name;
     found.iter().any(|side| side.touching).then(|| {
         format!(
@@ -96,7 +107,7 @@ fn is_far(planned: &LightPlan, shot: &Shot, placed: &Placed) -> Option<String> {
     let away = placed.light.center.distance(camera.target);
     let lost = ROUNDINGS * f64::from(BIAS_ROUNDING) * away;
     let name = &planned.name;
-    (planned.outcome == Outcome::Shadowed && lost > SEEN * camera.eye.distance(camera.target))
+    (planned.lighting == Lighting::Shadowed && lost > SEEN * camera.eye.distance(camera.target))
         .then(|| {
             format!(
                 "{name} is {away:.1e} away, where depths are rounded: occluders less than {lost:.1e} above a surface cast no shadow on it."

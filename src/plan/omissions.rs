@@ -1,9 +1,9 @@
 //! What a plan leaves out, and why.
 
 use super::maps::mssm_levels;
-use super::{Omission, Outcome, Plan};
+use super::{Lighting, Omission, Plan};
+use crate::frame::{Domain, Scope, counts};
 use crate::shot::{Shot, Technique};
-use crate::technique::Work;
 
 impl Plan {
     fn omit(&mut self, what: impl Into<String>, reason: impl Into<String>) {
@@ -13,7 +13,7 @@ impl Plan {
         });
     }
 
-    pub(super) fn list_omissions(&mut self, shot: &Shot, retained: bool) {
+    pub(super) fn list_omissions(&mut self, shot: &Shot) {
         if !self.masked {
             self.omit(
                 "fragment shader of the shadow maps",
@@ -31,38 +31,39 @@ impl Plan {
         if !self.outputs.picture {
             self.omit("shade", "only visibility is asked for");
         }
-        let kept = self.sets().next().filter(|_| retained);
-        if let Some(set) = kept {
-            let names: Vec<&str> = (self.map_passes(set).iter())
-                .map(|(name, _)| *name)
-                .collect();
-            self.omit(
-                names.join(", "),
-                "nothing that the view depends on has changed since the last frame",
-            );
-        }
         for index in 0..self.lights.len() {
             self.omit_of_light(shot, index);
         }
     }
 
+    /// What a kept shadow map leaves out.
+    pub(super) fn omit_lasting(&mut self) {
+        let lasting = (self.graph.steps.iter())
+            .filter(|step| step.pass.lasts && matches!(step.scope, Scope::View(_)));
+        let names: Vec<&str> = counts(lasting).iter().map(|(name, _)| *name).collect();
+        self.omit(
+            names.join(", "),
+            "nothing that the view depends on has changed since the last frame",
+        );
+    }
+
     fn omit_of_light(&mut self, shot: &Shot, index: usize) {
         let planned = &self.lights[index];
         let name = planned.name.clone();
-        match planned.outcome {
-            Outcome::Dark => {
+        match planned.lighting {
+            Lighting::Dark => {
                 return self.omit(
                     format!("{name}: everything"),
                     "no visible surface faces it: visibility 0",
                 );
             }
-            Outcome::Unshadowed => {
+            Lighting::Unshadowed => {
                 return self.omit(
                     format!("{name}: shadow maps"),
                     "nothing can cast a shadow on what is visible: visibility 1",
                 );
             }
-            Outcome::Shadowed => {}
+            Lighting::Shadowed => {}
         }
         let one_view = planned.views().count() == 1;
         let one_face = planned.views().all(|view| view.view.face == 0);
@@ -108,7 +109,7 @@ impl Plan {
             );
         }
         let packets = shot.settings.technique == Technique::PacketContour;
-        if packets && !recipe.has(Work::PacketList) && recipe.has(Work::PixelList) {
+        if packets && !recipe.has(Domain::PacketList) && recipe.has(Domain::PixelList) {
             self.omit(
                 format!("{name}: packet_visibility"),
                 "a packet is a single pixel",

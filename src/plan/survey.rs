@@ -13,7 +13,7 @@ use super::camera::Frustum;
 
 /// The answer for one light.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Survey {
+pub struct LightCoverage {
     /// A visible surface may lie in front of the light and face it.
     pub receivers: bool,
     /// A triangle may stand between the light and such a surface.
@@ -26,7 +26,7 @@ pub struct Survey {
     pub touching: bool,
 }
 
-impl Survey {
+impl LightCoverage {
     /// The faces that may have receivers, where the front one holds those within a tangent: 0 = front; 1, 2 = ±u; 3, 4 = ±v.
     pub fn faces(&self, reach: f32) -> Vec<usize> {
         let side = |&side: &usize| self.tangents[side - 1] > f64::from(reach);
@@ -103,10 +103,10 @@ pub fn survey(
     light: &AreaLight,
     parts: &[Part],
     touch: f64,
-) -> Survey {
+) -> LightCoverage {
     let (scene, origin) = (&*shot.scene, shot.origin());
     let placed = Placed::new(light, origin, touch);
-    let mut found = Survey {
+    let mut found = LightCoverage {
         receivers: false,
         casters: false,
         tangents: [0.0; 4],

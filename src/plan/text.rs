@@ -2,7 +2,8 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use super::{LightPlan, Outcome, Plan, ViewSet};
+use super::{LightPlan, Lighting, Plan, ViewSet};
+use crate::frame::Domain;
 use crate::shot::Technique;
 
 const MSSM_LEVELS: &str = "mssm levels";
@@ -35,12 +36,12 @@ impl Display for Plan {
             self.write_light(out, light)?;
         }
         writeln!(out, "\npasses of a frame    recorded")?;
-        for (name, count) in &self.passes {
+        for (name, count) in self.passes() {
             writeln!(out, "  {name:<18} {count:>8}")?;
         }
         writeln!(out, "\nmemory                      bytes")?;
         let sum = ("sum", self.memory_bytes());
-        for &(name, bytes) in self.resources.iter().chain([&sum]) {
+        for (name, bytes) in self.memory().chain([sum]) {
             writeln!(out, "  {name:<17} {bytes:>13}  {:>10}", human(bytes))?;
         }
         writeln!(out, "\nleft out, and why")?;
@@ -69,17 +70,23 @@ impl Plan {
             _ => format!("rectangle of {:.3} x {:.3}", 2.0 * half_u, 2.0 * half_v),
         };
         write!(out, "\n{}: {shape}, ", light.name)?;
-        match light.outcome {
-            Outcome::Dark => writeln!(out, "lights nothing visible"),
-            Outcome::Unshadowed => writeln!(out, "casts no shadow on anything visible"),
-            Outcome::Shadowed => {
+        match light.lighting {
+            Lighting::Dark => writeln!(out, "lights nothing visible"),
+            Lighting::Unshadowed => writeln!(out, "casts no shadow on anything visible"),
+            Lighting::Shadowed => {
                 writeln!(out, "casts shadows")?;
-                (light.sets.iter()).try_for_each(|set| self.write_views(out, set))
+                let mut first = light.light.view_first;
+                for set in &light.sets {
+                    self.write_views(out, set, first)?;
+                    first += set.views.len() as u32;
+                }
+                Ok(())
             }
         }
     }
 
-    fn write_views(&self, out: &mut Formatter, set: &ViewSet) -> Result {
+    /// `first`: the number of the set's first view.
+    fn write_views(&self, out: &mut Formatter, set: &ViewSet, first: u32) -> Result {
         let faces: Vec<&str> = (0..FACES.len())
             .filter(|&face| (set.views.iter()).any(|view| view.view.face as usize == face))
             .map(|face| FACES[face])
@@ -109,7 +116,7 @@ impl Plan {
             )?;
             writeln!(out, "  kernels     {width}x{height}, one for each pixel")?;
         }
-        if set.recipe.has(crate::technique::Work::PacketList) {
+        if set.recipe.has(Domain::PacketList) {
             let (width, height) = self.packet;
             writeln!(
                 out,
@@ -118,10 +125,8 @@ impl Plan {
                 self.size.1.div_ceil(height)
             )?;
         }
-        let passes = self.view_passes(set, self.is_retained());
-        let passes: Vec<String> = passes
-            .iter()
-            .map(|&(name, times)| match times {
+        let passes: Vec<String> = (self.passes_of_view(first).into_iter())
+            .map(|(name, times)| match times {
                 1 => name.to_owned(),
                 _ => format!("{name} x {times}"),
             })

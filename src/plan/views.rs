@@ -12,7 +12,7 @@ use crate::sub_light::Part;
 
 /// What a light's views are fitted to, beside the light itself.
 #[derive(Debug, Clone, Copy)]
-pub struct Site {
+pub struct MapParams {
     /// [scene units, world] What positions on the device are relative to.
     pub origin: DVec3,
     /// [texel] Width and height of a shadow map.
@@ -27,7 +27,7 @@ pub struct Site {
 
 /// Which part of a light a view looks from, and in which direction.
 #[derive(Debug, Clone)]
-pub struct Aspect {
+pub struct ViewPose {
     pub part: Part,
     /// 0 = front; 1, 2 = along ±u; 3, 4 = along ±v.
     pub face: usize,
@@ -37,15 +37,15 @@ pub struct Aspect {
     pub reach: f32,
 }
 
-impl Aspect {
+impl ViewPose {
     /// Sector table of the part, if a rim cuts it.
     pub fn sectors(&self) -> Option<Arc<[f32]>> {
         let sectors = self.part.sectors();
         (!sectors.is_empty()).then(|| sectors.clone())
     }
 
-    /// The view where the light stands. Takes no memory.
-    pub fn view(&self, site: &Site, light: &AreaLight, sector_first: u32) -> View {
+    /// The view where the light stands. Does not allocate.
+    pub fn view(&self, params: &MapParams, light: &AreaLight, sector_first: u32) -> View {
         let part = self.part.of(light);
         let (u, v, n) = match self.turned {
             true => light.turned().frame(),
@@ -64,11 +64,11 @@ impl Aspect {
             [center.x as f32, center.y as f32, radius as f32]
         });
         let (half, (lower, upper)) = (part.half_size, part.extent);
-        let center = part.center - site.origin;
+        let center = part.center - params.origin;
         View {
             center: array(center),
             center_residual: array(center - center.as_vec3().as_dvec3()),
-            touch: site.touch as f32,
+            touch: params.touch as f32,
             right: array(right),
             up: array(up),
             forward: array(forward),
@@ -88,9 +88,9 @@ impl Aspect {
             sector_first,
             face: self.face as u32,
             reach: self.reach,
-            map_size: site.map,
-            bias: site.bias,
-            levels_max: site.levels.max(1),
+            map_size: params.map,
+            bias: params.bias,
+            levels_max: params.levels.max(1),
         }
     }
 }

@@ -1,121 +1,138 @@
-//! From the visible surface to visibility: the passes that a plan lists, recorded into any command buffer. One chain
+//! Interprets a plan: creates the pipelines that its passes need, and records its steps into any command buffer. One chain
 //! serves the renderer, which owns its command buffers, and a host's frames, which do not.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use ash::vk;
+
+use super::constants;
+use super::pipelines::{Lists, Pipelines};
+use super::step::{Inputs, Recording};
 use crate::error::Result;
-use crate::gpu::{Commands, ComputePass, Gpu, Groups, Resources};
-use crate::plan::Plan;
-use crate::shared::Push;
-use crate::technique::Recipe;
+use crate::frame::{Lent, Scope, Step};
+use crate::gpu::{self, Commands, Constants, Gpu, Resources};
+use crate::plan::{Plan, ViewSet};
 
-use super::specialization;
-use super::view::{Maps, ViewPasses, tiles};
+/// What a host lends to all frames of a chain; empty where the library draws by itself.
+#[derive(Default)]
+pub struct Loans<'a> {
+    /// For each slot the images of the surface.
+    pub surfaces: Vec<&'a Resources>,
+    /// For each mesh its buffers.
+    pub meshes: Vec<&'a Resources>,
+    /// The shadow maps of the first slot's views, then of the next slot's.
+    pub maps: Vec<&'a Resources>,
+    /// The format of the image that the result is drawn to.
+    pub output: vk::Format,
+}
 
-/// Pipelines for all that follows the visible surface.
+/// The steps of a plan with their pipelines.
 pub struct Chain {
-    /// One for each variant and recipe.
-    passes: Vec<ViewPasses>,
-    /// Which of them each view has.
-    of_view: Vec<usize>,
-    resolve: ComputePass,
-    shade: Option<ComputePass>,
+    /// Those of different shaders or constants.
+    pipelines: Vec<Pipelines>,
+    /// The pipelines of each step of the plan's graph, by their place above.
+    of_step: Vec<usize>,
+    /// [texel] Side of each view's map.
+    sides: Vec<u32>,
+    rounds: u32,
 }
 
 impl Chain {
-    /// `maps`: lists of resources with a host's shadow maps, where the plan says so.
-    ///
     /// # Errors
-    /// Memory or a pipeline cannot be had.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        plan: &Plan,
-        resources: &Resources,
-        maps: &[Resources],
-    ) -> Result<Self> {
+    /// An allocation failed, or a pipeline cannot be created.
+    pub fn new(gpu: &Arc<Gpu>, plan: &Plan, resources: &Resources, loans: &Loans) -> Result<Self> {
+        let of_frame = constants::of_frame(plan);
+        let of_views = constants_of_views(plan, &of_frame);
         let mut known = BTreeMap::new();
-        let (mut passes, mut of_view) = (Vec::new(), Vec::new());
-        for set in plan.sets() {
-            for planned in &set.views {
-                let key = (planned.variant, &set.recipe);
-                let index = match known.get(&key) {
-                    Some(&index) => index,
-                    None => {
-                        let variant = planned.variant;
-                        passes.push(ViewPasses::new(gpu, plan, set, variant, resources, maps)?);
-                        known.insert(key, passes.len() - 1);
-                        passes.len() - 1
-                    }
-                };
-                of_view.push(index);
-            }
+        let (mut pipelines, mut of_step) = (Vec::new(), Vec::new());
+        for step in &plan.graph.steps {
+            let base = match step.scope {
+                Scope::View(view) => &of_views[view as usize],
+                Scope::Frame | Scope::Light(_) => &of_frame,
+            };
+            let all = constants::of_pass(&step.pass, base.clone());
+            let key = (step.pass, gpu::used(&all, &step.pass.shaders())?);
+            let index = match known.get(&key) {
+                Some(&index) => index,
+                None => {
+                    let lists = lists(step.pass.lent, resources, loans);
+                    pipelines.push(Pipelines::new(
+                        gpu,
+                        plan,
+                        &step.pass,
+                        &all,
+                        &lists,
+                        loans.output,
+                    )?);
+                    known.insert(key, pipelines.len() - 1);
+                    pipelines.len() - 1
+                }
+            };
+            of_step.push(index);
         }
-        let constants = specialization::of_frame(plan);
-        let compute =
-            |name: &str, shader: &str| ComputePass::new(gpu, name, shader, &constants, resources);
+        let side = |set: &ViewSet| vec![set.settings.map; set.views.len()];
         Ok(Self {
-            passes,
-            of_view,
-            resolve: compute("resolve", "resolve.comp")?,
-            shade: (plan.outputs.picture)
-                .then(|| compute("shade", "shade.comp"))
-                .transpose()?,
+            pipelines,
+            of_step,
+            sides: plan.sets().flat_map(side).collect(),
+            rounds: plan.rounds(),
         })
     }
 
-    /// Records all that the plan lists after the visible surface. Takes no memory.
-    ///
-    /// `only`: the view to which the frame is limited.
+    /// Records the steps of a plan that are wanted. Does not allocate.
     ///
     /// # Errors
-    /// A resource is missing that the plan should have listed.
+    /// A resource is missing that the plan should have listed, or an input that it asks for.
     pub fn record(
         &self,
         commands: &mut Commands,
         plan: &Plan,
         resources: &Resources,
-        maps: &mut Maps,
-        only: Option<u32>,
+        inputs: &mut Inputs,
+        wanted: impl Fn(&Step) -> bool,
     ) -> Result<()> {
-        let retained = plan.is_retained();
-        if plan.views().next().is_some() {
-            if !retained {
-                commands.clear("clear_fits", &[resources.buffer("fits")?]);
-            }
-            if plan.needs(Recipe::has_lists) {
-                let lists = [resources.buffer("lists")?, resources.buffer("rounds")?];
-                commands.clear("clear_lists", &lists);
+        let frame = Recording {
+            plan,
+            resources,
+            rounds: self.rounds,
+        };
+        for (step, &index) in plan.graph.steps.iter().zip(&self.of_step) {
+            let left_out = plan.retained && step.pass.lasts;
+            if !left_out && wanted(step) {
+                let side = match step.scope {
+                    Scope::View(view) => self.sides[view as usize],
+                    Scope::Frame | Scope::Light(_) => 0,
+                };
+                frame.record(commands, step, &self.pipelines[index], side, inputs)?;
             }
         }
-        for (index, light) in plan.lights.iter().enumerate() {
-            if light.accumulates() {
-                commands.clear("clear_occlusion", &[resources.buffer("occlusion")?]);
-            }
-            let first = light.light.view_first;
-            let views = first..first + light.light.view_count;
-            for view in views.filter(|view| only.is_none_or(|only| only == *view)) {
-                let passes = &self.passes[self.of_view[view as usize]];
-                if !retained {
-                    passes.record_map(commands, plan, resources, maps, view)?;
-                }
-                passes.record_stages(commands, resources, view)?;
-            }
-            let push = Push {
-                index: index as u32,
-                level: 0,
-            };
-            commands.dispatch("resolve", &self.resolve, push, Groups::Direct(tiles(plan)));
-        }
-        self.record_shade(commands, plan);
         Ok(())
     }
+}
 
-    /// Records the picture from the visibility that is there, if the plan has one.
-    pub fn record_shade(&self, commands: &mut Commands, plan: &Plan) {
-        if let Some(shade) = &self.shade {
-            let groups = Groups::Direct(tiles(plan));
-            commands.dispatch("shade", shade, Push::default(), groups);
+/// The constants of each view.
+fn constants_of_views(plan: &Plan, of_frame: &Constants) -> Vec<Constants> {
+    let mut all = Vec::new();
+    for light in &plan.lights {
+        for set in &light.sets {
+            for view in &set.views {
+                let mut constants = of_frame.clone();
+                constants.extend(constants::of_view(light, set, view));
+                all.push(constants);
+            }
         }
     }
+    all
+}
+
+/// The lists of resources that a pass is recorded with.
+fn lists<'a>(lent: Lent, resources: &'a Resources, loans: &Loans<'a>) -> Lists<'a> {
+    let lent = match lent {
+        Lent::Nothing => return vec![vec![resources]],
+        Lent::Surface => &loans.surfaces,
+        Lent::Mesh => &loans.meshes,
+        Lent::Map => &loans.maps,
+    };
+    lent.iter().map(|&lent| vec![lent, resources]).collect()
 }

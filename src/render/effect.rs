@@ -8,23 +8,23 @@ mod prepared;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
+use crate::frame::Casters;
 use crate::gpu::{Commands, Gpu};
-use crate::plan::{Casters, HostFrame, Plan, plan_for_host};
-use crate::shared::{self, Costs, Given, Instance, View};
+use crate::plan::{HostFrame, Plan, plan_for_host};
+use crate::shared::{self, Costs, Given, Instance, Projection, View};
 
-pub use input::{
-    CasterImages, DrawnView, FrameInput, GivenMap, Mesh, MeshInstance, SlotImages, Surface,
-};
+use super::step::Inputs;
+pub use given::GivenMap;
+pub use input::{CasterImages, DrawnView, FrameInput, Mesh, MeshInstance, SlotImages};
 use prepared::Prepared;
 
 /// Soft shadows of one light at one size and quality.
 ///
-/// `prepare` takes all memory and creates all pipelines, `record` records a frame and does nothing else, `collect`
+/// `prepare` allocates all memory and creates all pipelines, `record` records a frame and does nothing else, `collect`
 /// lets go of what no frame uses any more.
 pub struct Effect {
     gpu: Arc<Gpu>,
     host: HostFrame,
-    surface: Surface,
     costs: Costs,
     plan: Plan,
     /// What frames are recorded with now.
@@ -34,7 +34,7 @@ pub struct Effect {
     /// The serial of the last frame that was recorded, and of the last that the host knows to be finished.
     recorded: u64,
     completed: u64,
-    /// What a frame sends along, kept so that recording takes no memory.
+    /// What a frame sends along, kept so that recording does not allocate.
     views: Vec<View>,
     givens: Vec<Given>,
     instances: Vec<Instance>,
@@ -45,13 +45,12 @@ pub struct Effect {
 impl Effect {
     /// # Errors
     /// Something makes no sense, or exceeds the device's limits.
-    pub fn new(gpu: &Arc<Gpu>, host: HostFrame, surface: Surface, costs: Costs) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, host: HostFrame, costs: Costs) -> Result<Self> {
         costs.validate()?;
         let plan = plan_for_host(&host, &gpu.limits)?;
         let views: Vec<View> = plan.views().map(|planned| planned.view).collect();
         Ok(Self {
             gpu: gpu.clone(),
-            surface,
             costs,
             prepared: None,
             retired: Vec::new(),
@@ -76,28 +75,19 @@ impl Effect {
         self.plan.memory_bytes() * held as u64
     }
 
-    /// Takes all memory and creates all pipelines for frames with these images and meshes. May be called again when
+    /// Allocates all memory and creates all pipelines for frames with these images and meshes. May be called again when
     /// they change; what earlier frames use stays until it is `collect`ed.
     ///
     /// # Errors
-    /// An image or a mesh does not fit, or memory or a pipeline cannot be had; then all is as it was.
+    /// An image or a mesh does not fit, an allocation failed, or a pipeline cannot be created; then all is as it was.
     ///
     /// # Safety
     /// Images and buffers are of this device, as described, and outlive all frames that are recorded with them, and
     /// the next `prepare` and the `collect` after it.
     pub unsafe fn prepare(&mut self, slots: &[SlotImages], meshes: &[Mesh]) -> Result<()> {
         // SAFETY: the caller's promise.
-        let prepared = unsafe {
-            Prepared::new(
-                &self.gpu,
-                &self.host,
-                self.surface,
-                &self.plan,
-                self.costs,
-                slots,
-                meshes,
-            )
-        }?;
+        let prepared =
+            unsafe { Prepared::new(&self.gpu, &self.host, &self.plan, self.costs, slots, meshes) }?;
         self.retired.extend(self.prepared.replace(prepared));
         self.collect(self.completed);
         Ok(())
@@ -128,7 +118,7 @@ impl Effect {
         self.prepared.is_some()
     }
 
-    /// Records a frame. Takes no memory, submits nothing and waits for nothing.
+    /// Records a frame. Does not allocate, submits nothing and waits for nothing.
     ///
     /// # Errors
     /// Something of the frame makes no sense; then nothing was recorded.
@@ -147,13 +137,13 @@ impl Effect {
                 frame.serial, self.recorded
             )));
         }
-        frame.validate(&self.host, prepared)?;
+        frame.validate(&self.host, prepared.slots.len(), self.views.len())?;
         self.plan.place(&frame.light)?;
         for (view, planned) in self.views.iter_mut().zip(self.plan.views()) {
             *view = planned.view;
         }
         frame.give(&mut self.views, &mut self.givens)?;
-        let (meshes, instances) = (&prepared.meshes, &mut self.instances);
+        let (meshes, instances) = (&prepared.layouts, &mut self.instances);
         self.plan.frame.opaque_count =
             frame.gather(&self.host, meshes, instances, &mut self.chosen)?;
         self.recorded = frame.serial;
@@ -167,21 +157,37 @@ impl Effect {
         };
         // SAFETY: the caller's promise.
         let mut commands = unsafe { Commands::of_host(&self.gpu, commands) };
-        prepared.send(
-            &mut commands,
-            &self.plan,
-            &constants,
-            &self.views,
-            &self.givens,
-            &self.instances,
-        )?;
-        prepared.record(
-            &mut commands,
-            &self.plan,
-            &self.instances,
-            &self.chosen,
-            frame,
-        )
+        let given: &[Given] = match self.plan.casters.are_triangles() {
+            true => &[],
+            false => &self.givens,
+        };
+        let light = self.plan.lights.first().map(|light| light.light);
+        let light = light.unwrap_or_default();
+        let mut nobody = |_| {};
+        let draw = match &mut frame.draw {
+            Some(draw) => draw,
+            None => &mut nobody as &mut dyn FnMut(DrawnView),
+        };
+        let mut drawn = |index: u32| {
+            let offset = u64::from(index) * size_of::<Projection>() as u64;
+            draw(DrawnView { index, offset });
+        };
+        let mut inputs = Inputs {
+            uploads: &[
+                ("frame", bytemuck::bytes_of(&self.plan.frame)),
+                ("lights", bytemuck::bytes_of(&light)),
+                ("host", bytemuck::bytes_of(&constants)),
+                ("views", bytemuck::cast_slice(&self.views)),
+                ("givens", bytemuck::cast_slice(given)),
+                ("instances", bytemuck::cast_slice(&self.instances)),
+            ],
+            slot: frame.slot,
+            instances: &self.instances,
+            meshes: &self.chosen,
+            draw: Some(&mut drawn),
+            output: None,
+        };
+        prepared.record(&mut commands, &self.plan, &mut inputs)
     }
 }
 

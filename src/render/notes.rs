@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use crate::error::Result;
-use crate::plan::{LightPlan, Outcome, shines_along};
+use crate::plan::{LightPlan, Lighting, shines_along};
 
 impl Renderer {
     /// What is not as it was asked for, a sentence each: what the plan notes, and what the last frame shows. Call it after
@@ -20,7 +20,7 @@ impl Renderer {
                 ]);
             }
             let lit = visibility.iter().any(|&value| value > 0.0);
-            if !lit && light.outcome != Outcome::Dark {
+            if !lit && light.lighting != Lighting::Dark {
                 notes.push(self.lights_nothing(light)?);
             }
         }

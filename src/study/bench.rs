@@ -99,7 +99,7 @@ impl<'a> Bench<'a> {
         for settings in settings {
             let shot = with_settings(&subject.shot, &settings);
             // What cannot be planned takes no memory: it fails.
-            let planned = plan(&shot, self.options().outputs, &self.gpu.limits, false);
+            let planned = plan(&shot, self.options().outputs, &self.gpu.limits);
             let own = planned.map_or(0, |plan| plan.memory_bytes());
             match groups.last_mut() {
                 Some(group) if group.len() < GROUP && bytes + own <= budget => {
@@ -226,8 +226,8 @@ impl<'a> Bench<'a> {
         };
         let times = Times(&ready.frames);
         let plan = ready.renderer.plan();
-        let resources = plan.resources.iter();
-        let resources = resources.map(|&(name, bytes)| (name.to_owned(), bytes));
+        let resources = plan.memory();
+        let resources = resources.map(|(name, bytes)| (name.to_owned(), bytes));
         let measured = Measured {
             frames: ready.frames.len(),
             warm: true,

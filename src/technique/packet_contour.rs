@@ -6,27 +6,28 @@
 //! DEVIATION [Yang09]: samples below the receiver's plane do not occlude (`limit_at`), so that tilted surfaces are no
 //! occluders of themselves.
 
-use super::{CLASSIFY, KERNELS, PIXELS, Recipe, Stage, TURNS_OF_WALKS, Work};
+use super::{CLASSIFY, KERNELS, PIXELS, Recipe, TURNS_OF_WALKS, once};
+use crate::frame::{Domain, Pass};
 use crate::shot::Settings;
 
-const PACKETS: Stage = Stage {
-    name: "packet_visibility",
-    shader: "packet_visibility.comp",
-    work: Work::PacketList,
-};
+const PACKETS: Pass = Pass::dispatch(
+    "packet_visibility",
+    "packet_visibility.comp",
+    Domain::PacketList,
+);
 
 /// A packet of a single pixel is a pixel: the pixel-wise path.
 pub fn recipe(settings: &Settings) -> Recipe {
-    let stages = if settings.packet == (1, 1) {
-        vec![KERNELS, CLASSIFY, PIXELS]
+    let passes = if settings.packet == (1, 1) {
+        once([KERNELS, CLASSIFY, PIXELS])
     } else {
-        vec![KERNELS, CLASSIFY, PACKETS, PIXELS]
+        once([KERNELS, CLASSIFY, PACKETS, PIXELS])
     };
     Recipe {
         mssm: true,
         words: 1,
         turns: TURNS_OF_WALKS,
-        stages,
+        passes,
         ..Recipe::default()
     }
 }

@@ -5,13 +5,13 @@
 //! Right and wrong as `packet_contour`, whose baseline it is: flat over every cell of the kernel, or
 //! hierarchical over the MSSM.
 
-use super::{CLASSIFY, KERNELS, PIXELS, Recipe, TURNS_OF_WALKS};
+use super::{CLASSIFY, KERNELS, PIXELS, Recipe, TURNS_OF_WALKS, once};
 use crate::shot::Settings;
 
 pub fn recipe(settings: &Settings) -> Recipe {
     let mut recipe = Recipe::over_pixels("contour_visibility", "contour_visibility.comp");
     if settings.hierarchical {
-        recipe.stages = vec![KERNELS, CLASSIFY, PIXELS];
+        recipe.passes = once([KERNELS, CLASSIFY, PIXELS]);
         recipe.turns = TURNS_OF_WALKS;
     }
     recipe

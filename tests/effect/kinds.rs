@@ -3,16 +3,17 @@
 
 use ash::vk;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use halfshade::frame::{Casters, Surface};
 use halfshade::gpu::HostImageInfo;
-use halfshade::plan::{Casters, HostFrame};
-use halfshade::render::{DrawnView, Effect, FrameInput, GivenMap, SlotImages, Surface};
+use halfshade::plan::HostFrame;
+use halfshade::render::{DrawnView, Effect, FrameInput, GivenMap, SlotImages};
 use halfshade::shared::{NORMAL_OCTAHEDRAL, NORMAL_UNSIGNED};
 
 use super::host::Host;
 use super::painter::Painter;
 use super::{
-    OwnCasters, SIDE, Stage, clip_from_world, exported, gpu, prepared, prepared_for, record,
-    visibility, with_frame,
+    OwnCasters, SIDE, Stage, clip_from_world, exported, gpu, prepared, record, visibility,
+    with_frame,
 };
 
 /// Depth formats that have the 32 bits of the library's own, without and with a stencil.
@@ -27,7 +28,11 @@ fn frame_of(
     change: impl FnOnce(&mut FrameInput),
 ) -> Vec<f32> {
     let meshes = stage.meshes(host);
-    let mut effect = prepared_for(host, stage.frame(Casters::Gathered), surface, slot, &meshes);
+    let shape = HostFrame {
+        surface,
+        ..stage.frame(Casters::Gathered)
+    };
+    let mut effect = prepared(host, shape, slot, &meshes);
     with_frame(
         &stage.light(),
         meshes.len(),

@@ -12,11 +12,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use ash::vk;
 use glam::{DMat4, DVec3};
+use halfshade::frame::{Casters, Surface};
 use halfshade::gpu::{Gpu, HostImageInfo};
-use halfshade::plan::{Casters, HostFrame};
+use halfshade::plan::HostFrame;
 use halfshade::render::{
     DEFAULT_COSTS, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, Renderer,
-    SlotImages, Surface,
+    SlotImages,
 };
 use halfshade::scene::{AreaLight, LightShape};
 use halfshade::shared::{Fit, NORMAL_SIGNED, View};
@@ -105,7 +106,7 @@ impl Stage {
             map: renderer.read_image("shadow_map", texels).expect("a map"),
             fit: renderer.fits().expect("fits")[0],
             view: views().next().expect("a view").view,
-            side_faces: views().any(|view| view.aspect.face > 0),
+            side_faces: views().any(|view| view.pose.face > 0),
             shot,
         }
     }
@@ -120,6 +121,7 @@ impl Stage {
     fn frame(&self, casters: Casters) -> HostFrame {
         HostFrame {
             size: (SIDE, SIDE),
+            surface: Surface::Positions,
             light: self.light(),
             settings: self.shot.settings.clone(),
             casters,
@@ -264,20 +266,10 @@ fn exported(expected: &[f32]) -> Vec<f32> {
     expected.iter().map(of).collect()
 }
 
-/// An effect that is prepared for one slot of images, of which the surface is one of positions.
+/// An effect that is prepared for one slot of images.
 fn prepared(host: &Host, frame: HostFrame, slot: &SlotImages, meshes: &[Mesh]) -> Effect {
-    prepared_for(host, frame, Surface::Positions, slot, meshes)
-}
-
-fn prepared_for(
-    host: &Host,
-    frame: HostFrame,
-    surface: Surface,
-    slot: &SlotImages,
-    meshes: &[Mesh],
-) -> Effect {
     let gpu = host.adopted();
-    let mut effect = Effect::new(&gpu, frame, surface, DEFAULT_COSTS).expect("an effect");
+    let mut effect = Effect::new(&gpu, frame, DEFAULT_COSTS).expect("an effect");
     // SAFETY: all is of this device, as described, and outlives the effect.
     unsafe { effect.prepare(std::slice::from_ref(slot), meshes) }.expect("prepared");
     effect

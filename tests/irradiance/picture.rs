@@ -175,8 +175,7 @@ fn intensity_does_not_end_with_the_area() {
     let intensity = |light: AreaLight| {
         with_gpu(|gpu| {
             let shot = shot_of(stage(), light);
-            let planned =
-                plan(&shot, Outputs { picture: true }, &gpu.limits, false).expect("a plan");
+            let planned = plan(&shot, Outputs { picture: true }, &gpu.limits).expect("a plan");
             planned.lights[0].light.intensity[0]
         })
     };

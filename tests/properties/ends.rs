@@ -74,7 +74,7 @@ fn without_occluders_all_is_lit() {
                 settings(128, split),
             );
             let image = render(gpu, &shot);
-            assert_eq!(image.plan.lights[0].outcome, Outcome::Unshadowed);
+            assert_eq!(image.plan.lights[0].lighting, Lighting::Unshadowed);
             for (value, position) in image.visibility.iter().zip(&image.positions) {
                 assert!(if position[3] > 0.0 {
                     *value == 1.0

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use closed_form::{Occluder, rectangle_visibility};
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use halfshade::gpu::Gpu;
-use halfshade::plan::{Outcome, Outputs, Plan, plan};
+use halfshade::plan::{Lighting, Outputs, Plan, plan};
 use halfshade::scene::{AreaLight, LightShape, Scene};
 use halfshade::shot::{Settings, Shot, Technique};
 use proptest::collection::vec;
@@ -55,5 +55,5 @@ fn texel(image: &Image, light: DVec3, height: f64) -> f64 {
 }
 
 fn planned(gpu: &Gpu, shot: &Shot) -> Plan {
-    plan(shot, Outputs { picture: false }, &gpu.limits, false).expect("a plan")
+    plan(shot, Outputs { picture: false }, &gpu.limits).expect("a plan")
 }

@@ -50,7 +50,7 @@ fn extreme_cases_stay_finite_and_in_range() {
                 assert!(!ours || finding.mean < MEAN, "{finding:?}");
                 // Points have no kernels that the twin could check.
                 let outputs = Outputs { picture: false };
-                let planned = plan(&case.with(&settings), outputs, &gpu.limits, false);
+                let planned = plan(&case.with(&settings), outputs, &gpu.limits);
                 let integrated = planned.expect(name).near_count() == 0;
                 assert_eq!(finding.twin.is_some(), ours && integrated, "{finding:?}");
                 assert!(finding.twin.is_none_or(|twin| twin < TWIN), "{finding:?}");

@@ -50,7 +50,7 @@ pub fn check_shot(path: &Path, bytes: &[u8], overrides: &Overrides) -> bool {
     };
     check_scene(&shot.scene);
     for picture in [false, true] {
-        match plan(&shot, Outputs { picture }, &LIMITS, false) {
+        match plan(&shot, Outputs { picture }, &LIMITS) {
             Ok(plan) => assert!(plan.memory_bytes() <= LIMITS.memory_bytes),
             Err(error) => check_message(&error),
         }

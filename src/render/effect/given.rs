@@ -2,14 +2,22 @@
 
 use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 
-use super::input::GivenMap;
 use crate::error::{Error, Result};
 use crate::shared::{Given, View};
 
 /// [share of the largest half size] How far from the part's centre a map's eye may stand: f32 matrices round.
 const EYE_TOLERANCE: f64 = 1e-2;
 
-/// Takes the view's directions and its projection from the matrix that a map was drawn with. Takes no memory.
+/// A shadow map of the host's.
+#[derive(Debug, Clone, Copy)]
+pub struct GivenMap {
+    /// Columns of the matrix that it was drawn with.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// The depth where there is no caster.
+    pub depth_empty: f32,
+}
+
+/// Takes the view's directions and its projection from the matrix that a map was drawn with. Does not allocate.
 ///
 /// # Errors
 /// The matrix is no perspective projection from the centre of the view's part of the light.

@@ -2,22 +2,13 @@
 
 use ash::vk;
 
-use super::given::given_view;
-use super::prepared::{MeshSet, Prepared};
+use super::given::{GivenMap, given_view};
 use crate::error::{Error, Result};
+use crate::frame::Casters;
 use crate::gpu::HostImageInfo;
-use crate::plan::{Casters, HostFrame};
+use crate::plan::HostFrame;
 use crate::scene::AreaLight;
 use crate::shared::{Given, Instance, View};
-
-/// What a host says about its visible surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Surface {
-    /// Depths, as its projection gave them.
-    Depths,
-    /// Positions; w > 0 where there is a surface.
-    Positions,
-}
 
 /// The images of frames that are recorded with the same slot.
 #[derive(Debug, Clone)]
@@ -58,15 +49,6 @@ pub struct MeshInstance {
     pub transform: [[f32; 4]; 3],
 }
 
-/// A shadow map of the host's.
-#[derive(Debug, Clone, Copy)]
-pub struct GivenMap {
-    /// Columns of the matrix that it was drawn with.
-    pub clip_from_world: [[f32; 4]; 4],
-    /// The depth where there is no caster.
-    pub depth_empty: f32,
-}
-
 /// A view that the host is to draw the casters of.
 #[derive(Debug, Clone, Copy)]
 pub struct DrawnView {
@@ -102,12 +84,12 @@ fn invalid<T>(text: impl Into<String>) -> Result<T> {
 }
 
 impl FrameInput<'_> {
-    pub(super) fn validate(&self, host: &HostFrame, prepared: &Prepared) -> Result<()> {
+    /// `slots`, `views`: how many are prepared, and planned.
+    pub(super) fn validate(&self, host: &HostFrame, slots: usize, views: usize) -> Result<()> {
         self.light.validate()?;
         if self.serial == 0 {
             return invalid("a frame's serial is more than 0");
         }
-        let slots = prepared.slots.len();
         if self.slot >= slots {
             return invalid(format!(
                 "there is no slot {}; {slots} are prepared",
@@ -133,7 +115,6 @@ impl FrameInput<'_> {
             ));
         }
         let near = self.near.is_finite() && self.near > 0.0;
-        let views = prepared.view_count;
         match host.casters {
             Casters::DrawnByHost if self.draw.is_none() => {
                 invalid("the host draws the casters, so the frame needs a callback")
@@ -160,11 +141,11 @@ impl FrameInput<'_> {
         Ok(())
     }
 
-    /// Lists the instances. Returns the number of their triangles, or of those that fit.
+    /// Lists the instances; `meshes`: what all instances of each have in common. Returns the number of their triangles, or of those that fit.
     pub(super) fn gather(
         &mut self,
         host: &HostFrame,
-        meshes: &[MeshSet],
+        meshes: &[Instance],
         instances: &mut Vec<Instance>,
         chosen: &mut Vec<usize>,
     ) -> Result<u32> {
@@ -191,11 +172,11 @@ impl FrameInput<'_> {
                 transform: instance.transform,
                 position_first: vertices as u32,
                 triangle_first: triangles as u32,
-                ..mesh.layout
+                ..*mesh
             });
             chosen.push(instance.mesh);
-            vertices += u64::from(mesh.layout.vertex_count);
-            triangles += u64::from(mesh.layout.triangle_count);
+            vertices += u64::from(mesh.vertex_count);
+            triangles += u64::from(mesh.triangle_count);
             if vertices > host.vertices.into() || triangles > host.triangles.into() {
                 return invalid(format!(
                     "the frame has more than the {} vertices or {} triangles that the effect was made for",

@@ -69,14 +69,14 @@ fn add_hidden(
     if fit.level_count == 0 {
         return Ok(());
     }
-    let (view, variant) = (planned.view, planned.variant);
+    let view = planned.view;
     let size = view.map_size as i32;
     let depths: Vec<f32> = renderer.read_image("shadow_map", (size * size) as usize)?;
     let map = ShadowMap {
         size,
         depths: &depths,
     };
-    let part = SubLight::new(&view, &fit, variant.round, map);
+    let part = SubLight::new(&view, &fit, planned.is_round(), map);
     hidden
         .par_iter_mut()
         .enumerate()
@@ -84,7 +84,7 @@ fn add_hidden(
             let (position, normal) = place(pixel);
             let to_point = position - Vec3::from(view.center);
             if in_view(&view, to_point, normal) {
-                let receiver = project(&view, &fit, variant.oblique, to_point, normal);
+                let receiver = project(&view, &fit, planned.oblique, to_point, normal);
                 let share = part.hidden_share(&receiver, [0; 2], [size - 2; 2]);
                 *hidden += f64::from(view.weight) * share;
             }

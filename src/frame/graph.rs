@@ -1,0 +1,51 @@
+//! The passes of a frame in the order in which they are recorded.
+
+use super::pass::Pass;
+
+/// A pass at its place in the frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    pub pass: Pass,
+    pub scope: Scope,
+    /// Level of a hierarchy or layer of the map, for passes that make one at a time.
+    pub level: u32,
+}
+
+/// What a step is done for; its shaders find the number in `push.index`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Scope {
+    Frame,
+    Light(u32),
+    View(u32),
+}
+
+/// All steps of a frame that draws every map.
+#[derive(Debug, Clone, Default)]
+pub struct Graph {
+    pub steps: Vec<Step>,
+}
+
+impl Graph {
+    /// Adds passes of the same scope.
+    pub fn add(&mut self, scope: Scope, passes: impl IntoIterator<Item = Pass>) {
+        self.add_levels(scope, passes.into_iter().map(|pass| (pass, 0)));
+    }
+
+    /// Adds passes of the same scope with their levels.
+    pub fn add_levels(&mut self, scope: Scope, passes: impl IntoIterator<Item = (Pass, u32)>) {
+        let step = |(pass, level)| Step { pass, scope, level };
+        self.steps.extend(passes.into_iter().map(step));
+    }
+}
+
+/// The passes' names with how often each is there, in the order of their first step.
+pub fn counts<'a>(steps: impl IntoIterator<Item = &'a Step>) -> Vec<(&'static str, u32)> {
+    let mut counts: Vec<(&'static str, u32)> = Vec::new();
+    for step in steps {
+        match counts.iter_mut().find(|(name, _)| *name == step.pass.name) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((step.pass.name, 1)),
+        }
+    }
+    counts
+}

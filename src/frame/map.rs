@@ -1,0 +1,178 @@
+//! A view's shadow map, fitted to what can cast on what is visible, and the structures over it.
+
+use super::Casters;
+use super::pass::{Domain, Drawn, Lent, Pass, Target, Work};
+use super::resource::{Resource, Shape};
+use crate::gpu::ImageKind;
+use crate::shared::{self, Fit, SECTOR_STEPS, View};
+
+/// [texel] Frame of the shadow map that stays empty, so that contours close inside the map.
+pub const MARGIN: u32 = 1;
+
+const CLEAR_FITS: Pass = Pass::new("clear_fits", Work::Clear(&["fits"])).lasting();
+
+/// The visible receivers' bounds in the view (`algorithm.md` §10).
+const RECEIVERS: Pass =
+    Pass::dispatch("receivers", "receivers.comp", Domain::PixelReduction).lasting();
+
+/// The triangles that can shadow one of them, and their bounds.
+const CASTERS: Pass =
+    Pass::dispatch("casters", "casters.comp", Domain::TriangleReduction).lasting();
+
+/// The bounds of where casters can stand, for a host that draws them.
+const REGION: Pass = Pass::dispatch("region", "region.comp", Domain::Once).lasting();
+
+/// Projection, levels and indirect dispatches.
+const FIT: Pass = Pass::dispatch("fit", "fit.comp", Domain::Once).lasting();
+
+/// The matrix of the projection, for a host that draws casters.
+const PROJECTION: Pass = Pass::dispatch("projection", "projection.comp", Domain::Once).lasting();
+
+/// The least depth in each direction.
+const SHADOW_MAP: Pass = drawn(
+    "shadow_map",
+    "shadow_map.vert",
+    None,
+    Drawn::Casters {
+        masked: "shadow_map.frag",
+    },
+);
+
+const SHADOW_MAP_BY_HOST: Pass = drawn("shadow_map", "", None, Drawn::ByHost);
+
+const SHADOW_MAP_IMPORTED: Pass = drawn(
+    "shadow_map",
+    "whole_image.vert",
+    Some("import_map.frag"),
+    Drawn::WholeImage,
+)
+.lent(Lent::Map);
+
+/// What lies behind the layers that are kept already [BCS08].
+const PEEL: Pass = drawn(
+    "peel",
+    "shadow_map.vert",
+    Some("shadow_map.frag"),
+    Drawn::Casters {
+        masked: "shadow_map.frag",
+    },
+)
+.with(&[("PEEL", 1)]);
+
+const KEEP_LAYER: Pass = Pass::new(
+    "keep_layer",
+    Work::CopyLayer {
+        from: "shadow_map",
+        to: "layers",
+    },
+)
+.lasting();
+
+/// A level of the multi-scale shadow map [Yang09 §4.2, SS07].
+const MSSM: Pass = Pass::dispatch("mssm", "mssm.comp", Domain::MssmLevel).lasting();
+const MSSM_16: Pass = Pass::dispatch("mssm", "mssm_16.comp", Domain::MssmLevel).lasting();
+
+/// A level of the hierarchical shadow map [DU07].
+const HSM: Pass = Pass::dispatch("hsm", "hsm.comp", Domain::HsmLevel).lasting();
+
+const fn drawn(
+    name: &'static str,
+    vertex: &'static str,
+    fragment: Option<&'static str>,
+    what: Drawn,
+) -> Pass {
+    let into = Target::Map;
+    let work = Work::Draw {
+        vertex,
+        fragment,
+        what,
+        into,
+    };
+    Pass::new(name, work).lasting()
+}
+
+/// What a technique reads of a view's shadow map.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Structures {
+    /// [level] Of the MSSM; 0 = none.
+    pub mssm_levels: u32,
+    /// [bit] 16 or 32, of a bound in it.
+    pub mssm_bits: u32,
+    /// [level] Of the hierarchical shadow map; 0 = none.
+    pub hsm_levels: u32,
+    /// [layer] That are kept; 0 = the map itself is read.
+    pub layers: u32,
+}
+
+/// Once a frame, before the first view.
+pub fn first_passes() -> impl Iterator<Item = Pass> {
+    [CLEAR_FITS].into_iter()
+}
+
+/// A view's shadow map and what is built on it, each with the level or layer that it makes.
+pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
+    let map: &[Pass] = match casters {
+        Casters::Scene | Casters::Gathered => &[RECEIVERS, CASTERS, FIT, SHADOW_MAP],
+        Casters::DrawnByHost => &[RECEIVERS, REGION, FIT, PROJECTION, SHADOW_MAP_BY_HOST],
+        Casters::Maps => &[RECEIVERS, FIT, SHADOW_MAP_IMPORTED],
+    };
+    let mut passes: Vec<(Pass, u32)> = map.iter().map(|&pass| (pass, 0)).collect();
+    let mssm = match structures.mssm_bits {
+        16 => MSSM_16,
+        _ => MSSM,
+    };
+    passes.extend((0..structures.mssm_levels).map(|level| (mssm, level)));
+    passes.extend((1..=structures.hsm_levels).map(|level| (HSM, level)));
+    for layer in 0..structures.layers {
+        passes.extend((layer > 0).then_some((PEEL, layer)));
+        passes.push((KEEP_LAYER, layer));
+    }
+    passes
+}
+
+/// [level] Of a hierarchical shadow map over a map of `side` texels, from 2×2 texels to a single node.
+pub fn hsm_levels(side: u32) -> u32 {
+    side.next_power_of_two().ilog2()
+}
+
+/// What passes draw and build.
+pub const RESOURCES: &[Resource] = &[
+    Resource::new("caster_indices", |s| {
+        Shape::Buffer(s.inventory.triangles * 12).when(s.has_views() && s.casters.are_triangles())
+    }),
+    Resource::new("givens", |s| {
+        Shape::array::<shared::Given>(s.views.into()).when(!s.casters.are_triangles())
+    }),
+    Resource::new("projections", |s| {
+        Shape::array::<shared::Projection>(s.views.into()).when(s.casters == Casters::DrawnByHost)
+    }),
+    Resource::new("shadow_map", |s| {
+        Shape::image(ImageKind::Depth, (s.map, s.map))
+    }),
+    Resource::new("mssm", |s| {
+        let kind = match s.mssm_bits {
+            16 => ImageKind::Bounds16,
+            _ => ImageKind::Bounds,
+        };
+        Shape::layers(kind, (s.map, s.map), s.levels)
+    }),
+    Resource::new("layers", |s| {
+        Shape::layers(ImageKind::Layers, (s.map, s.map), s.layers)
+    }),
+    Resource::new("hsm", |s| {
+        // Its levels below one another, as if the map's side were the next power of two.
+        let size = (s.map.div_ceil(2), s.map.next_power_of_two());
+        Shape::image(ImageKind::Bounds, size).when(s.hsm)
+    }),
+];
+
+/// What the host knows of the views, and what the device finds out.
+pub const VIEW_RESOURCES: &[Resource] = &[
+    Resource::copied("views", |s| Shape::array::<View>(s.views.into())),
+    Resource::new("fits", |s| Shape::array::<Fit>(s.views.into())),
+];
+
+/// The sector tables of sub-lights that a disc's rim cuts.
+pub const SECTORS: &[Resource] = &[Resource::copied("sectors", |s| {
+    Shape::array::<f32>(u64::from(s.sector_tables) * u64::from(SECTOR_STEPS + 1))
+})];

@@ -1,0 +1,185 @@
+//! A resource: memory that passes share under the name that their shaders give it.
+
+use super::{Casters, Front};
+use crate::gpu::ImageKind;
+use crate::scene::Scene;
+
+/// A resource as its producer declares it.
+#[derive(Debug, Clone, Copy)]
+pub struct Resource {
+    pub name: &'static str,
+    /// How large it is in a frame.
+    pub shape: fn(&Sizes) -> Shape,
+    /// The host fills or reads it, by way of memory that it sees.
+    pub copied: bool,
+}
+
+/// The form of a resource in a frame. One without bytes is left out; shaders that name it find a placeholder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// [byte]
+    Buffer(u64),
+    Image {
+        kind: ImageKind,
+        /// [texel]
+        size: (u32, u32),
+        layers: u32,
+    },
+}
+
+/// What the sizes of resources depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct Sizes {
+    pub front: Front,
+    pub casters: Casters,
+    pub inventory: Inventory,
+    /// [pixel]
+    pub image: (u32, u32),
+    /// The shaded picture is asked for.
+    pub picture: bool,
+    /// The scene has textures that the frame needs.
+    pub textured: bool,
+    /// The scene has alpha-masked triangles.
+    pub masked: bool,
+    pub lights: u32,
+    pub views: u32,
+    /// Of the views' sub-lights, those with a sector table.
+    pub sector_tables: u32,
+    /// [texel] Side of the shadow map; 0 = no view needs one.
+    pub map: u32,
+    /// [bit] 16 or 32, of a bound in the MSSM.
+    pub mssm_bits: u32,
+    /// [level] Of the MSSM.
+    pub levels: u32,
+    /// [layer] Of the shadow map that are kept.
+    pub layers: u32,
+    /// Whether there are a hierarchical shadow map, kernels, and lists of packets and of pixels.
+    pub hsm: bool,
+    pub kernels: bool,
+    pub packet_lists: bool,
+    pub pixel_lists: bool,
+    /// [pixel] Width and height of a packet.
+    pub packet: (u32, u32),
+    /// [dispatch] In which a list is worked off.
+    pub rounds: u32,
+    /// [word] What a pixel keeps from one round to the next.
+    pub words: u32,
+}
+
+/// How much of a scene there is, or may be.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Inventory {
+    pub vertices: u64,
+    pub triangles: u64,
+    pub materials: u64,
+    pub texcoords: u64,
+    /// [byte] Of all textures.
+    pub texels: u64,
+    /// Of a host's meshes in a frame.
+    pub instances: u64,
+}
+
+impl Resource {
+    /// One that stays on the device.
+    pub const fn new(name: &'static str, shape: fn(&Sizes) -> Shape) -> Self {
+        Self {
+            name,
+            shape,
+            copied: false,
+        }
+    }
+
+    /// One that is copied from or to the host.
+    pub const fn copied(name: &'static str, shape: fn(&Sizes) -> Shape) -> Self {
+        Self {
+            name,
+            shape,
+            copied: true,
+        }
+    }
+}
+
+impl Shape {
+    /// A buffer of `count` elements of type `T`.
+    pub fn array<T>(count: u64) -> Self {
+        Self::Buffer(count * size_of::<T>() as u64)
+    }
+
+    pub fn image(kind: ImageKind, size: (u32, u32)) -> Self {
+        Self::layers(kind, size, 1)
+    }
+
+    pub fn layers(kind: ImageKind, size: (u32, u32), layers: u32) -> Self {
+        Self::Image { kind, size, layers }
+    }
+
+    /// As it is if it is needed, or else without bytes.
+    #[must_use]
+    pub fn when(self, needed: bool) -> Self {
+        match self {
+            _ if needed => self,
+            Self::Buffer(_) => Self::Buffer(0),
+            Self::Image { kind, size, .. } => Self::layers(kind, size, 0),
+        }
+    }
+
+    /// [byte]
+    pub fn bytes(self) -> u64 {
+        match self {
+            Self::Buffer(bytes) => bytes,
+            Self::Image {
+                kind,
+                size: (width, height),
+                layers,
+            } => u64::from(width) * u64::from(height) * u64::from(layers) * kind.texel_bytes(),
+        }
+    }
+
+    pub fn is_image(self) -> bool {
+        matches!(self, Self::Image { .. })
+    }
+}
+
+impl Sizes {
+    /// [pixel] Of the image.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.image.0) * u64::from(self.image.1)
+    }
+
+    /// [packet] Of the image.
+    pub fn packets(&self) -> u64 {
+        let along = |pixels: u32, packet: u32| u64::from(pixels.div_ceil(packet));
+        along(self.image.0, self.packet.0) * along(self.image.1, self.packet.1)
+    }
+
+    /// Whether some light has views.
+    pub fn has_views(&self) -> bool {
+        self.views > 0
+    }
+
+    pub fn is_drawn(&self) -> bool {
+        self.front == Front::Drawn
+    }
+
+    /// The lists of packets and of pixels, a pair for each view.
+    pub fn lists(&self) -> u64 {
+        match self.packet_lists || self.pixel_lists {
+            true => self.views.into(),
+            false => 0,
+        }
+    }
+}
+
+impl Inventory {
+    pub fn of(scene: &Scene) -> Self {
+        let texels = scene.textures.iter().map(|texture| texture.rgba.len());
+        Self {
+            vertices: scene.positions.len() as u64,
+            triangles: scene.triangles.len() as u64,
+            materials: scene.materials.len() as u64,
+            texcoords: scene.texcoords.len() as u64,
+            texels: texels.sum::<usize>() as u64,
+            instances: 0,
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Records a step of a plan with its pipelines.
+
+use std::mem::offset_of;
+
+use super::pipelines::Pipelines;
+use crate::error::{Error, Result};
+use crate::frame::{Domain, Drawn, Lent, Scope, Step, Target, Work, map::MARGIN};
+use crate::gpu::{self, Attachments, Commands, Draw, Groups, MAX_COLORS, Resources};
+use crate::plan::Plan;
+use crate::shared::{Fit, GROUP_SIZE, Instance, Push, Round, TILE_SIZE};
+
+/// What a host brings along for one frame; nothing where the library draws by itself.
+#[derive(Default)]
+pub struct Inputs<'a> {
+    /// Values for buffers, by name.
+    pub uploads: &'a [(&'static str, &'a [u8])],
+    pub slot: usize,
+    pub instances: &'a [Instance],
+    /// The mesh of each instance.
+    pub meshes: &'a [usize],
+    /// Draws the casters of the view of that number.
+    pub draw: Option<&'a mut dyn FnMut(u32)>,
+    /// The image for the result.
+    pub output: Option<gpu::Target>,
+}
+
+/// A frame while it is recorded.
+pub struct Recording<'a> {
+    pub plan: &'a Plan,
+    pub resources: &'a Resources,
+    /// [dispatch] In which lists are worked off.
+    pub rounds: u32,
+}
+
+impl Recording<'_> {
+    /// `side`: [texel] of the view's map. Does not allocate.
+    ///
+    /// # Errors
+    /// A resource is missing that the plan should have listed, or an input that it asks for.
+    pub fn record(
+        &self,
+        commands: &mut Commands,
+        step: &Step,
+        pipelines: &Pipelines,
+        side: u32,
+        inputs: &mut Inputs,
+    ) -> Result<()> {
+        let (name, resources) = (step.pass.name, self.resources);
+        match step.pass.work {
+            Work::Clear(names) => {
+                resources.check_buffers(names)?;
+                let buffers = names.iter().flat_map(|name| resources.buffer(name));
+                commands.clear(name, buffers);
+            }
+            Work::Upload => {
+                let names = inputs.uploads.iter().map(|(name, _)| name);
+                resources.check_buffers(names)?;
+                let uploads = inputs.uploads.iter();
+                let update = |&(name, data)| Some((resources.buffer(name).ok()?, data));
+                commands.update(name, uploads.filter_map(update));
+            }
+            Work::Dispatch {
+                over: Domain::Instances,
+                ..
+            } => dispatch_instances(commands, name, pipelines, inputs),
+            Work::Dispatch { over, .. } => {
+                self.dispatch(commands, step, pipelines, over, self.list(step, inputs))?;
+            }
+            Work::Draw { what, into, .. } => {
+                let target = self.target(into, side, inputs)?;
+                self.draw(commands, step, pipelines, what, &target, inputs)?;
+            }
+            Work::CopyLayer { from, to } => {
+                let (from, to) = (resources.image(from)?, resources.image(to)?);
+                commands.copy_layer(name, from, to, step.level);
+            }
+        }
+        Ok(())
+    }
+
+    fn dispatch(
+        &self,
+        commands: &mut Commands,
+        step: &Step,
+        pipelines: &Pipelines,
+        over: Domain,
+        list: usize,
+    ) -> Result<()> {
+        let push = push(step);
+        let bound = pipelines.compute()?.with(list);
+        match over {
+            Domain::PacketList | Domain::PixelList => {
+                // Lists are worked off in rounds, each of which finds its own groups.
+                let rounds = self.resources.buffer("rounds")?;
+                let dispatch = |round| {
+                    let first = push.index as usize * self.rounds as usize;
+                    let offset = (first + round as usize) * size_of::<Round>() + in_round(over);
+                    let push = Push {
+                        level: round,
+                        ..push
+                    };
+                    (bound, push, Groups::Indirect(rounds, offset as u64))
+                };
+                commands.dispatch_all(step.pass.name, (0..self.rounds).map(dispatch));
+            }
+            _ => commands.dispatch(step.pass.name, bound, push, self.groups(over, push)?),
+        }
+        Ok(())
+    }
+
+    /// With which of its lists of resources a pass is recorded.
+    fn list(&self, step: &Step, inputs: &Inputs) -> usize {
+        match (step.pass.lent, step.scope) {
+            (Lent::Surface, _) => inputs.slot,
+            (Lent::Map, Scope::View(view)) => {
+                inputs.slot * self.plan.views().count() + view as usize
+            }
+            _ => 0,
+        }
+    }
+
+    fn groups(&self, over: Domain, push: Push) -> Result<Groups<'_>> {
+        let plan = self.plan;
+        let triangles = plan.frame.opaque_count + plan.frame.masked_count;
+        let found = |offset| {
+            let fits = self.resources.buffer("fits")?;
+            Ok(Groups::Indirect(fits, in_fit(push.index, offset)))
+        };
+        Ok(match over {
+            Domain::Image => Groups::Direct(tiles(plan.size)),
+            Domain::PixelReduction => reduction(plan.size.0 * plan.size.1),
+            Domain::TriangleReduction => reduction(triangles),
+            Domain::Pixels => return found(offset_of!(Fit, kernel_groups)),
+            Domain::Packets => return found(offset_of!(Fit, classify_groups)),
+            Domain::MssmLevel => {
+                let level = push.level as usize * size_of::<[u32; 3]>();
+                return found(offset_of!(Fit, level_groups) + level);
+            }
+            Domain::HsmLevel => {
+                let side = plan.map.div_ceil(1 << push.level);
+                Groups::Direct(tiles((side, side)))
+            }
+            Domain::Once | Domain::Instances | Domain::PacketList | Domain::PixelList => {
+                Groups::Direct([1, 1, 1])
+            }
+        })
+    }
+
+    fn target(&self, into: Target, side: u32, inputs: &Inputs) -> Result<Attached> {
+        let image = |name| Ok(self.resources.image(name)?.target());
+        match into {
+            Target::Images { colors, depth } => {
+                let depth = image(depth)?;
+                let mut attached = [depth; MAX_COLORS];
+                for (target, name) in attached.iter_mut().zip(colors) {
+                    *target = image(name)?;
+                }
+                Ok(Attached {
+                    colors: attached,
+                    color_count: colors.len(),
+                    depth: Some(depth),
+                    margin: 0,
+                })
+            }
+            Target::Map => {
+                let mut map = image("shadow_map")?;
+                map.size = (side, side);
+                Ok(Attached {
+                    colors: [map; MAX_COLORS],
+                    color_count: 0,
+                    depth: Some(map),
+                    margin: MARGIN,
+                })
+            }
+            Target::Lent => {
+                let output = inputs
+                    .output
+                    .ok_or_else(|| missing("an image for the result"))?;
+                Ok(Attached {
+                    colors: [output; MAX_COLORS],
+                    color_count: 1,
+                    depth: None,
+                    margin: 0,
+                })
+            }
+        }
+    }
+
+    fn draw(
+        &self,
+        commands: &mut Commands,
+        step: &Step,
+        pipelines: &Pipelines,
+        what: Drawn,
+        target: &Attached,
+        inputs: &mut Inputs,
+    ) -> Result<()> {
+        let (name, push, into) = (step.pass.name, push(step), target.attachments());
+        let list = self.list(step, inputs);
+        match (what, pipelines) {
+            (Drawn::Surface, Pipelines::Draw(pass)) => {
+                let frame = &self.plan.frame;
+                let vertices = 3 * (frame.opaque_count + frame.masked_count);
+                let draw = (pass.with(list), Draw::Vertices(vertices));
+                commands.draw(name, push, &into, [draw]);
+            }
+            (Drawn::WholeImage, Pipelines::Draw(pass)) => {
+                let draw = (pass.with(list), Draw::Vertices(3));
+                commands.draw(name, push, &into, [draw]);
+            }
+            (Drawn::Casters { .. }, Pipelines::Casters { opaque, masked }) => {
+                let fits = self.resources.buffer("fits")?;
+                let indices = self.resources.buffer("caster_indices")?;
+                let casters = |offset| Draw::Indexed {
+                    indices,
+                    command: (fits, in_fit(push.index, offset)),
+                };
+                let opaque = (opaque.with(0), casters(offset_of!(Fit, opaque_draw)));
+                let masked = masked.as_ref();
+                let masked =
+                    masked.map(|pass| (pass.with(0), casters(offset_of!(Fit, masked_draw))));
+                commands.draw(name, push, &into, [opaque].into_iter().chain(masked));
+            }
+            (Drawn::ByHost, _) => {
+                let draw = inputs.draw.as_mut();
+                let draw = draw.ok_or_else(|| missing("what draws the casters"))?;
+                commands.draw_by_host(name, &into, || draw(push.index));
+            }
+            _ => return Err(missing("the pipelines of a draw")),
+        }
+        Ok(())
+    }
+}
+
+/// What a draw goes to.
+struct Attached {
+    colors: [gpu::Target; MAX_COLORS],
+    color_count: usize,
+    depth: Option<gpu::Target>,
+    /// [texel] Frame round the image that nothing is drawn to.
+    margin: u32,
+}
+
+impl Attached {
+    fn attachments(&self) -> Attachments<'_> {
+        Attachments {
+            colors: &self.colors[..self.color_count],
+            depth: self.depth,
+            margin: self.margin,
+        }
+    }
+}
+
+/// Without meshes there are neither pipelines nor instances.
+fn dispatch_instances(
+    commands: &mut Commands,
+    name: &'static str,
+    pipelines: &Pipelines,
+    inputs: &Inputs,
+) {
+    let instances = inputs.instances.iter().zip(inputs.meshes).enumerate();
+    let dispatch = |(index, (instance, &mesh)): (usize, (&Instance, &usize))| {
+        let push = Push {
+            index: index as u32,
+            level: 0,
+        };
+        let count = instance.vertex_count.max(instance.triangle_count);
+        Some((pipelines.compute().ok()?.with(mesh), push, reduction(count)))
+    };
+    commands.dispatch_independent(name, instances.filter_map(dispatch));
+}
+
+fn missing(what: &str) -> Error {
+    Error::Invalid(format!("the frame lacks {what} that was planned for"))
+}
+
+fn push(step: &Step) -> Push {
+    let index = match step.scope {
+        Scope::Frame => 0,
+        Scope::Light(index) | Scope::View(index) => index,
+    };
+    Push {
+        index,
+        level: step.level,
+    }
+}
+
+/// Work groups of a pass that reduces `count` items: each invocation takes several, so that few of them
+/// have to agree in memory.
+fn reduction(count: u32) -> Groups<'static> {
+    const ITEMS_PER_INVOCATION: u32 = 8;
+    const GROUPS_MAX: u32 = 4096;
+    let groups = count.div_ceil(GROUP_SIZE * ITEMS_PER_INVOCATION);
+    Groups::Direct([groups.clamp(1, GROUPS_MAX), 1, 1])
+}
+
+/// Work groups over an image of this size.
+fn tiles((width, height): (u32, u32)) -> [u32; 3] {
+    [width.div_ceil(TILE_SIZE), height.div_ceil(TILE_SIZE), 1]
+}
+
+/// [byte] Where in a view's fit a field stands.
+fn in_fit(view: u32, offset: usize) -> u64 {
+    (view as usize * size_of::<Fit>() + offset) as u64
+}
+
+/// [byte] Where in a round the groups of a list stand.
+fn in_round(list: Domain) -> usize {
+    match list {
+        Domain::PacketList => offset_of!(Round, packet_groups),
+        _ => offset_of!(Round, pixel_groups),
+    }
+}
