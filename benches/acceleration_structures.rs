@@ -6,7 +6,7 @@ mod gpu_time;
 use criterion::{Criterion, criterion_group, criterion_main};
 use gpu_time::{GpuTime, bench, criterion, open, renderer, shot};
 use halfshade::render::Renderer;
-use halfshade::shot::{Settings, Technique};
+use halfshade::technique::{Settings, Technique};
 
 /// [texel] Width and height of the map.
 const MAPS: [u32; 5] = [256, 512, 1024, 2048, 4096];

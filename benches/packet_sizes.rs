@@ -6,8 +6,9 @@ mod gpu_time;
 use criterion::{Criterion, criterion_group, criterion_main};
 use gpu_time::{GpuTime, bench, criterion, open, renderer, shot};
 use halfshade::scene::LightShape;
-use halfshade::shot::{Leaf, Mapping, Settings, Shot};
+use halfshade::shot::Shot;
 use halfshade::study::is_traversal;
+use halfshade::technique::{Leaf, Mapping, Settings};
 
 /// [pixel]
 const PACKETS: [(u32, u32); 7] = [(1, 1), (2, 2), (3, 3), (4, 2), (4, 4), (8, 4), (8, 8)];

@@ -16,6 +16,7 @@ pub mod calibration;
 pub mod compare;
 pub mod devices;
 pub mod given;
+mod knob_args;
 mod load_args;
 mod outputs;
 pub mod plan;

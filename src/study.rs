@@ -24,5 +24,5 @@ pub use folder::{Folder, Shard, key};
 pub use front::front;
 pub use run::{Errors, Machine, Measured, Outcome, Run, is_traversal, is_visibility};
 pub use subject::Subject;
-pub use sweep::{Sweep, usual_settings};
+pub use sweep::Sweep;
 pub use tune::{Goal, best};

@@ -1,6 +1,15 @@
 //! Techniques: what each publication runs in every view, between the shared front (g-buffer, shadow map,
-//! acceleration structures) and the shared back (resolve, shade). A technique is data, a list of passes: the plan
-//! puts them in order, the renderer records them. All add to one image of occlusion that `resolve` cannot tell apart.
+//! acceleration structures) and the shared back (resolve, shade). A technique is data: its file says which knobs it reads,
+//! which passes it has and which memory these take; the plan puts them in order, the renderer records them. All add to one
+//! image of occlusion that `resolve` cannot tell apart.
+//!
+//! To add one: its file, which implements [`Method`], its shaders, and its lines in the list below. Knobs that no technique
+//! had before are a row each of the table in `settings`.
+
+mod asked;
+mod choice;
+mod knob;
+mod settings;
 
 mod bitmask;
 mod depth_peeling;
@@ -15,8 +24,109 @@ mod reference_maps;
 use crate::frame::kernel::{CLASSIFY, KERNELS};
 use crate::frame::{Domain, Pass, Resource};
 use crate::scene::AreaLight;
-use crate::shot::{Settings, Technique};
 use crate::sub_light::{self, Part};
+
+pub use choice::Choice;
+pub use knob::{Knob, Row, SweepFlag};
+pub use settings::{KNOBS, Leaf, Mapping, Occluders, Pattern, Settings};
+
+/// Registers techniques, in the order of their numbers in the C library: name of the variant, name for people, and what
+/// implements it.
+macro_rules! techniques {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal, $method:path;)+) => {
+        choice::choice! {
+            /// Which publication computes the visibility.
+            enum Technique, "technique" {
+                $($(#[$doc])* $variant = $name,)+
+            }
+        }
+
+        impl Technique {
+            /// What it runs.
+            pub fn method(self) -> &'static dyn Method {
+                match self {
+                    $(Self::$variant => &$method,)+
+                }
+            }
+        }
+    };
+}
+
+techniques! {
+    /// [Yang09], this engine's own.
+    PacketContour = "packet-contour", packet_contour::PacketContour;
+    /// [GBP07] as re-implemented in [Yang09]: every cell of the kernel, pixel by pixel.
+    PixelContour = "pixel-contour", pixel_contour::PixelContour;
+    /// [GBP06]: the back-projected areas of all texels of the kernel.
+    Micropatch = "micropatch", micropatch::Micropatch;
+    /// [DU07]: the same, found in a min-max pyramid.
+    MicropatchHierarchical = "micropatch-hierarchical", micropatch_hierarchical::MicropatchHierarchical;
+    /// [SS07]: bits of light samples covered by microquads.
+    Bitmask = "bitmask", bitmask::Bitmask;
+    /// [BCS08]: several peeled layers of the shadow map.
+    DepthPeeling = "depth-peeling", depth_peeling::DepthPeeling;
+    /// [Fernando05]: blocker search and percentage-closer filter.
+    Pcss = "pcss", pcss::Pcss;
+    /// [Williams78]: nearest sample, or 3×3 of them.
+    Hard = "hard", hard::Hard;
+    /// The mean of many hard shadow maps.
+    ReferenceMaps = "reference-maps", reference_maps::ReferenceMaps;
+}
+
+/// What a technique's file says of it. What it leaves out is as for a rival with a single view of kernels.
+pub trait Method: Sync {
+    /// What runs in each view.
+    fn recipe(&self, settings: &Settings) -> Recipe;
+
+    /// The flags of the knobs that it reads with these settings, beside those that all read: map, bias and counters, and
+    /// the MSSM's if it has one.
+    fn knobs(&self, settings: &Settings) -> Vec<&'static str>;
+
+    /// Specialization constants beside those that knobs set.
+    fn constants(&self, _settings: &Settings) -> Vec<(&'static str, u32)> {
+        Vec::new()
+    }
+
+    /// [texel] The usual bias ([`Settings::bias`]).
+    fn bias(&self, _settings: &Settings) -> f32 {
+        1.0
+    }
+
+    /// Changes default settings to those that it is known by.
+    fn make_usual(&self, settings: &mut Settings) {
+        settings.split = 1;
+    }
+
+    /// The settings by which it is compared with others, those that it is known by (`usual`) and its variants.
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        vec![usual]
+    }
+
+    /// What goes with another value of a knob, given by its field, where a study tries several.
+    fn follow(&self, _field: &str, _settings: &mut Settings) {}
+
+    /// The parts of a light that have views of their own.
+    fn parts(&self, light: &AreaLight, settings: &Settings) -> Vec<Part> {
+        sub_light::parts(light, settings.split)
+    }
+
+    /// Whether points of the light cast its shadows, hard ones.
+    fn samples_points(&self) -> bool {
+        false
+    }
+
+    /// Whether these points are many, each with a view of its own, of which the mean counts.
+    fn has_views_of_points(&self) -> bool {
+        false
+    }
+}
+
+impl Technique {
+    /// The settings by which it is compared with others.
+    pub fn variants(self) -> Vec<Settings> {
+        self.method().variants(Settings::usual(self))
+    }
+}
 
 /// A technique with its settings, as what there is to run.
 #[derive(Debug, Clone, Default)]
@@ -40,17 +150,7 @@ pub struct Recipe {
 impl Recipe {
     /// `settings`: as they run for the light ([`Settings::of_light`]).
     pub fn new(settings: &Settings) -> Self {
-        match settings.technique {
-            Technique::PacketContour => packet_contour::recipe(settings),
-            Technique::PixelContour => pixel_contour::recipe(settings),
-            Technique::Micropatch => micropatch::recipe(),
-            Technique::MicropatchHierarchical => micropatch_hierarchical::recipe(),
-            Technique::Bitmask => bitmask::recipe(settings),
-            Technique::DepthPeeling => depth_peeling::recipe(settings),
-            Technique::Pcss => pcss::recipe(),
-            Technique::Hard => hard::recipe(),
-            Technique::ReferenceMaps => reference_maps::recipe(),
-        }
+        settings.technique.method().recipe(settings)
     }
 
     /// A kernel for each penumbra pixel, and a pass over the list of them.
@@ -92,11 +192,19 @@ fn once(passes: impl IntoIterator<Item = Pass>) -> Vec<(Pass, u32)> {
 
 /// The parts of a light that have views of their own; `settings`: as they run for it.
 pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
-    match settings.technique {
-        Technique::ReferenceMaps => reference_maps::parts(light, settings),
-        _ => sub_light::parts(light, settings.split),
-    }
+    settings.technique.method().parts(light, settings)
 }
+
+/// Of a technique's variants: its usual settings with a change.
+fn with(usual: &Settings, change: impl FnOnce(&mut Settings)) -> Settings {
+    let mut settings = usual.clone();
+    change(&mut settings);
+    settings
+}
+
+/// [texel] Contours' samples are compared with the receiver's plane. What is left is the rasteriser's grid, to which corners
+/// of triangles are moved: 1/16 of a texel is what Vulkan asks for.
+const CONTOUR_BIAS: f32 = 0.25;
 
 /// [turn] Of a scan for each cell: the cell, what is found in it, and what neighbours find that differ in all of it.
 const TURNS_OF_SCANS: u32 = 8;

@@ -10,7 +10,8 @@ use glam::DVec3;
 use halfshade::gpu::Gpu;
 use halfshade::plan::{Outputs, plan};
 use halfshade::scene::LightShape;
-use halfshade::shot::{Leaf, Mapping, Settings, Shot, Technique};
+use halfshade::shot::Shot;
+use halfshade::technique::{Leaf, Mapping, Settings, Technique};
 use support::{largest_difference, load, visibility, with_gpu};
 
 /// [visibility] Rounding of sums of up to some hundred segments, each of the order of 1, in any order.

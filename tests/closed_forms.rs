@@ -15,7 +15,7 @@ use closed_form::{HalfPlane, Occluder, disc_visibility, rectangle_visibility};
 use glam::{DVec2, DVec3};
 use halfshade::gpu::Gpu;
 use halfshade::scene::AreaLight;
-use halfshade::shot::{Pattern, Settings, Technique};
+use halfshade::technique::{Pattern, Settings, Technique};
 use support::{Image, Triangles, camera, disc_light, rectangle_light, render, shot, with_gpu};
 
 const LIGHT: DVec3 = DVec3::new(0.1, 3.0, -0.05);

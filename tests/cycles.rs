@@ -10,7 +10,8 @@ mod support;
 use std::sync::Arc;
 
 use halfshade::gpu::{Gpu, Options};
-use halfshade::shot::{Settings, Shot, Technique};
+use halfshade::shot::Shot;
+use halfshade::technique::{Settings, Technique};
 use support::{load, renderer, same_bits, with_gpu};
 
 #[global_allocator]

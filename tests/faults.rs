@@ -15,7 +15,8 @@ use faults::with_fault;
 use halfshade::gpu::{Gpu, Options};
 use halfshade::plan::Outputs;
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
-use halfshade::shot::{Settings, Shot, Technique};
+use halfshade::shot::Shot;
+use halfshade::technique::{Settings, Technique};
 use halfshade::{Error, Result};
 use support::load;
 

@@ -19,7 +19,8 @@ use halfshade::gpu::Gpu;
 use halfshade::render::DEFAULT_COSTS;
 use halfshade::scene::LightShape;
 use halfshade::shared::{KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
-use halfshade::shot::{Leaf, Mapping, Shot};
+use halfshade::shot::Shot;
+use halfshade::technique::{Leaf, Mapping};
 
 /// [visibility] The device sums some hundred areas in f32, each with a rounding error of a few 1e-7 of the
 /// light, and interpolates the sectors of discs.

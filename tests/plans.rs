@@ -7,7 +7,8 @@ use glam::{DVec3, Vec3, Vec4};
 use halfshade::gpu::Limits;
 use halfshade::plan::{Outputs, plan};
 use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
-use halfshade::shot::{Overrides, Settings, Shot, Technique};
+use halfshade::shot::{Overrides, Shot};
+use halfshade::technique::{Settings, Technique};
 
 /// Of no device, so that the plans depend on none.
 const LIMITS: Limits = Limits {

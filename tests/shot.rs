@@ -4,7 +4,8 @@ mod support;
 
 use glam::DVec3;
 use halfshade::scene::{AreaLight, LightShape};
-use halfshade::shot::{Leaf, Mapping, Overrides, Settings, Shot, Technique};
+use halfshade::shot::{Overrides, Shot};
+use halfshade::technique::{Leaf, Mapping, Settings, Technique};
 use serde_json::{Value, json};
 use support::*;
 use tempfile::TempDir;

@@ -11,7 +11,8 @@ mod goldens;
 
 use glam::{DVec2, DVec3, Vec3};
 use halfshade::shared::{Fit, View};
-use halfshade::shot::{Occluders, Pattern, Settings, Shot, Technique};
+use halfshade::shot::Shot;
+use halfshade::technique::{Occluders, Pattern, Settings, Technique};
 use support::{
     Triangles, camera, disc_light, load, rectangle, rectangle_light, renderer, shot, with_gpu,
 };

@@ -12,9 +12,10 @@ use criterion::{Bencher, BenchmarkGroup, Criterion, SamplingMode, Throughput};
 use halfshade::gpu::{Gpu, Options};
 use halfshade::plan::Outputs;
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
-use halfshade::shot::{Overrides, Settings, Shot};
+use halfshade::shot::{Overrides, Shot};
 use halfshade::spread::Spread;
 use halfshade::study::Machine;
+use halfshade::technique::Settings;
 
 /// The file of every benchmark that was measured, a JSON object a line; criterion's own reports do not know the device.
 fn records() -> PathBuf {

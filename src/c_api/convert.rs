@@ -2,28 +2,10 @@
 
 use glam::{DVec3, Vec3};
 
-use super::check::flag;
 use super::outcome::{Fault, Outcome};
 use super::types::*;
 use crate::scene::{AreaLight, Camera, LightShape};
-use crate::shot::{Leaf, Mapping, Occluders, Pattern, Settings, Technique};
-
-/// In the order of HS_TECHNIQUE_...
-const TECHNIQUES: [Technique; 9] = [
-    Technique::PacketContour,
-    Technique::PixelContour,
-    Technique::Micropatch,
-    Technique::MicropatchHierarchical,
-    Technique::Bitmask,
-    Technique::DepthPeeling,
-    Technique::Pcss,
-    Technique::Hard,
-    Technique::ReferenceMaps,
-];
-const LEAVES: [Leaf; 2] = [Leaf::Reprocess, Leaf::PerPixel];
-const MAPPINGS: [Mapping; 2] = [Mapping::Serial, Mapping::Lanes];
-const OCCLUDERS: [Occluders; 2] = [Occluders::Micropatches, Occluders::Contours];
-const PATTERNS: [Pattern; 2] = [Pattern::Regular, Pattern::Jittered];
+use crate::technique::{KNOBS, Knob, Settings, Technique};
 
 /// The value that a number stands for.
 pub fn choice<T: Copy>(list: &[T], number: u32, name: &str) -> Outcome<T> {
@@ -35,14 +17,8 @@ pub fn choice<T: Copy>(list: &[T], number: u32, name: &str) -> Outcome<T> {
     })
 }
 
-fn number<T: PartialEq>(list: &[T], value: &T) -> u32 {
-    list.iter()
-        .position(|known| known == value)
-        .unwrap_or_default() as u32
-}
-
 pub fn technique(number: u32) -> Outcome<Technique> {
-    choice(&TECHNIQUES, number, "technique")
+    choice(Technique::ALL, number, "technique")
 }
 
 /// A field that is there for later versions.
@@ -53,30 +29,45 @@ pub fn reserved(value: u32) -> Outcome {
     }
 }
 
-pub fn settings(given: &hs_settings) -> Outcome<Settings> {
-    let settings = Settings {
-        technique: technique(given.technique)?,
-        packet: (given.packet_width, given.packet_height),
-        leaf: choice(&LEAVES, given.leaf, "leaf")?,
-        mapping: choice(&MAPPINGS, given.mapping, "mapping")?,
-        split: given.split,
-        map: given.map,
-        mssm_bits: given.mssm_bits,
-        footprint_pruning: flag(given.footprint_pruning, "footprint_pruning")?,
-        hierarchical: flag(given.hierarchical, "hierarchical")?,
-        gap_filling: flag(given.gap_filling, "gap_filling")?,
-        layers: given.layers,
-        occluders: choice(&OCCLUDERS, given.occluders, "occluders")?,
-        light_samples: given.light_samples,
-        pattern: choice(&PATTERNS, given.pattern, "pattern")?,
-        blocker_samples: given.blocker_samples,
-        filter_samples: given.filter_samples,
-        percentage_closer: flag(given.percentage_closer, "percentage_closer")?,
-        maps: given.maps,
-        near_points: given.near_points,
-        bias: (given.bias != USUAL_BIAS).then_some(given.bias),
-        counters: flag(given.counters, "counters")?,
+/// The fields of hs_settings that are knobs, each by the name of the knob.
+macro_rules! knob_fields {
+    ($with:ident) => {
+        $with!(
+            technique,
+            leaf,
+            mapping,
+            split,
+            map,
+            mssm_bits,
+            footprint_pruning,
+            hierarchical,
+            gap_filling,
+            layers,
+            occluders,
+            light_samples,
+            pattern,
+            blocker_samples,
+            filter_samples,
+            percentage_closer,
+            maps,
+            near_points,
+            counters
+        )
     };
+}
+
+pub fn settings(given: &hs_settings) -> Outcome<Settings> {
+    let mut settings = Settings {
+        packet: (given.packet_width, given.packet_height),
+        bias: (given.bias != USUAL_BIAS).then_some(given.bias),
+        ..Settings::default()
+    };
+    macro_rules! read {
+        ($($field:ident),+) => {
+            $(knob(stringify!($field))?.set_number(&mut settings, given.$field)?;)+
+        };
+    }
+    knob_fields!(read);
     settings.validate()?;
     Ok(settings)
 }
@@ -85,34 +76,22 @@ pub fn settings(given: &hs_settings) -> Outcome<Settings> {
 const USUAL_BIAS: f32 = -1.0;
 
 /// Fills all but the head.
-pub fn write_settings(target: &mut hs_settings, settings: &Settings) {
-    *target = hs_settings {
-        r#type: target.r#type,
-        size: target.size,
-        next: target.next,
-        technique: number(&TECHNIQUES, &settings.technique),
-        packet_width: settings.packet.0,
-        packet_height: settings.packet.1,
-        leaf: number(&LEAVES, &settings.leaf),
-        mapping: number(&MAPPINGS, &settings.mapping),
-        split: settings.split,
-        map: settings.map,
-        mssm_bits: settings.mssm_bits,
-        footprint_pruning: settings.footprint_pruning.into(),
-        hierarchical: settings.hierarchical.into(),
-        gap_filling: settings.gap_filling.into(),
-        layers: settings.layers,
-        occluders: number(&OCCLUDERS, &settings.occluders),
-        light_samples: settings.light_samples,
-        pattern: number(&PATTERNS, &settings.pattern),
-        blocker_samples: settings.blocker_samples,
-        filter_samples: settings.filter_samples,
-        percentage_closer: settings.percentage_closer.into(),
-        maps: settings.maps,
-        near_points: settings.near_points,
-        bias: settings.bias.unwrap_or(USUAL_BIAS),
-        counters: settings.counters.into(),
-    };
+pub fn write_settings(target: &mut hs_settings, settings: &Settings) -> Outcome {
+    (target.packet_width, target.packet_height) = settings.packet;
+    target.bias = settings.bias.unwrap_or(USUAL_BIAS);
+    macro_rules! write {
+        ($($field:ident),+) => {
+            $(target.$field = knob(stringify!($field))?.number(settings);)+
+        };
+    }
+    knob_fields!(write);
+    Ok(())
+}
+
+/// The knob of a field.
+fn knob(field: &str) -> Outcome<&'static Knob> {
+    let found = KNOBS.iter().find(|knob| knob.field == field);
+    found.ok_or_else(|| Fault::invalid(format!("there is no knob {field}")))
 }
 
 pub fn camera(given: &hs_camera) -> Outcome<Camera> {

@@ -9,7 +9,8 @@ use super::handles::{CONTEXTS, Held, SCENES, SHOTS};
 use super::outcome::{Fault, Outcome, call};
 use super::types::*;
 use crate::scene::{Camera, Scene};
-use crate::shot::{Overrides, Settings, Shot};
+use crate::shot::{Overrides, Shot};
+use crate::technique::Settings;
 
 /// [pixel] Width and height of the image of a shot whose camera was not set.
 const SIZE: u32 = 512;
@@ -189,8 +190,7 @@ pub unsafe extern "C" fn hs_settings_default(
     call(|_| {
         // SAFETY: the caller's promise.
         let target = unsafe { output(settings) }?;
-        convert::write_settings(target, &Settings::usual(convert::technique(technique)?));
-        Ok(())
+        convert::write_settings(target, &Settings::usual(convert::technique(technique)?))
     })
 }
 

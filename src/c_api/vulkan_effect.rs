@@ -13,7 +13,7 @@ use crate::frame::{Casters, Surface};
 use crate::plan::HostFrame;
 use crate::render::{DEFAULT_COSTS, Effect};
 use crate::shared::{Costs, NORMAL_OCTAHEDRAL, NORMAL_SIGNED, NORMAL_UNSIGNED, Projection};
-use crate::shot::{Settings, Technique};
+use crate::technique::{Settings, Technique};
 
 /// An effect, and what its frames have in common.
 pub struct Frames {

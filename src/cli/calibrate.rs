@@ -12,7 +12,7 @@ use halfshade::Result;
 use halfshade::calibrate::{Measured, Thoroughness, search_costs, winner};
 use halfshade::gpu::Gpu;
 use halfshade::shared::Costs;
-use halfshade::shot::{Leaf, Mapping};
+use halfshade::technique::{Leaf, Mapping};
 
 use self::bench::Bench;
 use self::table::{rows, written};

@@ -7,7 +7,7 @@ use halfshade::gpu::DeviceInfo;
 use halfshade::image::write_atomically;
 use halfshade::render::DEFAULT_COSTS;
 use halfshade::shared::Costs;
-use halfshade::shot::{Leaf, Mapping, Settings};
+use halfshade::technique::{Leaf, Mapping, Settings};
 use halfshade::{Error, Result};
 
 /// Of the stored file. Files of any other format are refused.
@@ -79,6 +79,13 @@ impl Calibration {
             edge: self.edge_cost,
             visibility: self.visibility_cost,
         }
+    }
+
+    /// Changes settings to what it has found.
+    pub fn apply(&self, settings: &mut Settings) {
+        settings.packet = self.packet;
+        settings.leaf = self.leaf;
+        settings.mapping = self.mapping;
     }
 
     /// # Errors

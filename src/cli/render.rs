@@ -196,7 +196,7 @@ fn timed_frames(
         print_note(&note);
         shot.notes.push(note);
     }
-    Stats::new(gpu, shot, renderer, &frames, args.shot.counters)
+    Stats::new(gpu, shot, renderer, &frames, shot.settings.counters)
 }
 
 /// The visibility of one light or of all, by the name of its channel.

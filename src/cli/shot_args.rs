@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use halfshade::gpu::{Gpu, Options};
-use halfshade::shot::{Leaf, Mapping, Occluders, Overrides, Pattern, Settings, Shot, Technique};
+use halfshade::shot::{Overrides, Shot};
 use halfshade::{Error, Result};
 
 use super::calibration::Calibration;
 use super::given::Given;
+use super::knob_args::KnobArgs;
 use super::load_args::LoadArgs;
 use super::progress;
 
@@ -17,73 +18,8 @@ use super::progress;
 pub struct ShotArgs {
     /// A shot file (.json), or a .gltf or .glb with a camera and a light
     pub shot: PathBuf,
-    /// Which publication computes the visibility: packet-contour, pixel-contour, micropatch,
-    /// micropatch-hierarchical, bitmask, depth-peeling, pcss, hard or reference-maps
-    #[arg(long, value_name = "NAME", default_value_t = Technique::PacketContour)]
-    technique: Technique,
-    /// Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path [default: calibrated, else 4x4]
-    #[arg(long, value_name = "WxH", value_parser = parse_packet)]
-    packet: Option<(u32, u32)>,
-    /// What a leaf does where a packet's pixels disagree: reprocess or per-pixel [default: calibrated, else per-pixel]
-    #[arg(long, value_name = "RULE")]
-    leaf: Option<Leaf>,
-    /// How a packet maps to shader invocations: serial or lanes [default: calibrated, else serial]
-    #[arg(long, value_name = "MAPPING")]
-    mapping: Option<Mapping>,
-    /// Cut each light into N×N sub-lights, 1 to 16; 1 is fastest and leaks where occluders overlap
-    /// [default: 4 with packet-contour, else 1]
-    #[arg(long, value_name = "N")]
-    split: Option<u32>,
-    /// Width and height of a shadow map in texels, 16 to 8192
-    #[arg(long, value_name = "R", default_value_t = 512)]
-    map: u32,
-    /// Bits of a depth bound in the hierarchy over the map, 32 or 16 (half its memory, the same image)
-    #[arg(long, value_name = "BITS", default_value_t = 32)]
-    mssm_bits: u32,
-    /// Depth bias in texels of the receiver's slope, 0 or more
-    /// [default: 0.25 with contours, 0.5 with reference-maps, 6 with pcss, else 1]
-    #[arg(long, value_name = "TEXELS")]
-    bias: Option<f32>,
-    /// Visit nodes whose back-projection misses the light as well, as the paper does
-    #[arg(long)]
-    no_footprint_pruning: bool,
-    /// With pixel-contour: walk the MSSM instead of every cell of the kernel
-    #[arg(long)]
-    hierarchical: bool,
-    /// With micropatch and micropatch-hierarchical: leave the gaps between patches open
-    #[arg(long)]
-    no_gap_filling: bool,
-    /// With bitmask and depth-peeling: layers of the shadow map, 1 to 4 [default: 4 with depth-peeling, else 1]
-    #[arg(long, value_name = "N")]
-    layers: Option<u32>,
-    /// With depth-peeling: what a layer's texels stand for, micropatches or contours
-    #[arg(long, value_name = "KIND", default_value_t = Occluders::Micropatches)]
-    occluders: Occluders,
-    /// With bitmask: N×N samples of the light, 8 to 16
-    #[arg(long, value_name = "N", default_value_t = 16)]
-    light_samples: u32,
-    /// With bitmask: where the light's samples stand, regular or jittered
-    #[arg(long, value_name = "NAME", default_value_t = Pattern::Jittered)]
-    pattern: Pattern,
-    /// With pcss: samples of the search for blockers, 1 to 1024
-    #[arg(long, value_name = "N", default_value_t = 16)]
-    blocker_samples: u32,
-    /// With pcss: samples of the filter, 1 to 1024
-    #[arg(long, value_name = "N", default_value_t = 32)]
-    filter_samples: u32,
-    /// With hard: the share of 3×3 samples that hide the pixel, instead of the nearest one
-    #[arg(long)]
-    percentage_closer: bool,
-    /// With reference-maps: hard shadow maps from points on the light, 1 to 4096
-    #[arg(long, value_name = "N", default_value_t = 1024)]
-    maps: u32,
-    /// With packet-contour: points of the light that cast hard shadows, on all of it, where an occluder is nearer to
-    /// sub-lights than they are wide, 0 to 4096; 0 = integrate these as well
-    #[arg(long, value_name = "N", default_value_t = 256)]
-    near_points: u32,
-    /// Count pixels, packets, nodes and edges (takes time)
-    #[arg(long)]
-    pub counters: bool,
+    #[command(flatten)]
+    knobs: KnobArgs,
     /// Make the scene's own point and spot lights discs of this radius, in scene units, 0 or more
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
@@ -102,7 +38,7 @@ impl ShotArgs {
     /// A value is out of its range.
     pub fn check(&self) -> Result<()> {
         self.overrides().validate()?;
-        self.settings(&Calibration::default()).validate()
+        self.knobs.settings(&Calibration::default())?.validate()
     }
 
     /// Loads the shot, with the flags' settings and a note on each of the `given` flags that it does not read; what the
@@ -110,7 +46,7 @@ impl ShotArgs {
     pub fn load(&self, calibration: &Calibration, given: &Given) -> Result<Shot> {
         let overrides = self.overrides();
         let mut shot = progress::spin("loading", || Shot::load(&self.shot, &overrides))?;
-        shot.settings = self.settings(calibration);
+        shot.settings = self.knobs.settings(calibration)?;
         shot.notes.extend(unread(&shot, given));
         Ok(shot)
     }
@@ -122,34 +58,6 @@ impl ShotArgs {
             scene_index: self.scene,
             camera_index: self.camera,
             ..self.load.overrides()
-        }
-    }
-
-    fn settings(&self, calibration: &Calibration) -> Settings {
-        let usual = Settings::usual(self.technique);
-        Settings {
-            technique: self.technique,
-            packet: self.packet.unwrap_or(calibration.packet),
-            leaf: self.leaf.unwrap_or(calibration.leaf),
-            mapping: self.mapping.unwrap_or(calibration.mapping),
-            split: self.split.unwrap_or(usual.split),
-            map: self.map,
-            mssm_bits: self.mssm_bits,
-            footprint_pruning: !self.no_footprint_pruning,
-            hierarchical: self.hierarchical,
-            gap_filling: !self.no_gap_filling,
-            layers: self.layers.unwrap_or(usual.layers),
-            occluders: self.occluders,
-            light_samples: self.light_samples,
-            pattern: self.pattern,
-            blocker_samples: self.blocker_samples,
-            filter_samples: self.filter_samples,
-            percentage_closer: self.percentage_closer,
-            maps: self.maps,
-            near_points: self.near_points,
-            // Adding 0 takes the sign from −0.
-            bias: self.bias.map(|bias| bias + 0.0),
-            counters: self.counters,
         }
     }
 }
@@ -171,14 +79,6 @@ fn unread(shot: &Shot, given: &Given) -> Vec<String> {
     };
     let idle = |flag: &&str| !(shot.lights.iter()).any(|light| is_read(flag, light.is_point()));
     given.flags().filter(idle).map(|flag| note(&flag)).collect()
-}
-
-/// The value of `--packet`; its range is checked with the other settings.
-pub fn parse_packet(text: &str) -> Result<(u32, u32), String> {
-    let sides = text.split_once(['x', 'X', '×']);
-    sides
-        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)))
-        .ok_or_else(|| "a packet is written 4x4, each side from 1 to 8 pixels".to_owned())
 }
 
 /// Where to render.

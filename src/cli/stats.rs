@@ -7,9 +7,10 @@ use halfshade::gpu::Gpu;
 use halfshade::number::sum;
 use halfshade::render::{Frame, Renderer};
 use halfshade::shared::Counters;
-use halfshade::shot::{Settings, Shot};
+use halfshade::shot::Shot;
 use halfshade::spread::Spread;
 use halfshade::study::is_visibility;
+use halfshade::technique::Settings;
 use serde::Serialize;
 
 use super::notes;

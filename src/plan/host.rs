@@ -11,7 +11,8 @@ use crate::frame::{Casters, Front, Inventory, Surface};
 use crate::gpu::Limits;
 use crate::scene::AreaLight;
 use crate::shared;
-use crate::shot::{MAX_SIZE, Settings};
+use crate::shot::MAX_SIZE;
+use crate::technique::Settings;
 use crate::technique::{self, Recipe};
 
 /// What a host's frames have in common.

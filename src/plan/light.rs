@@ -8,9 +8,10 @@ use super::survey::LightCoverage;
 use super::views::{self, MapParams, ViewPose};
 use crate::scene::AreaLight;
 use crate::shared::{self, FRONT_REACH, View};
-use crate::shot::{Settings, Shot, Technique};
+use crate::shot::Shot;
 use crate::sub_light::{Part, evenly_spread};
 use crate::technique::Recipe;
+use crate::technique::Settings;
 
 /// Tangent up to which the front face of a point's view holds receivers: 76 degrees. Its map is fitted to casters, so that
 /// a wide one costs texels only where there are casters to the side.
@@ -270,9 +271,9 @@ fn poses(
 
 /// Tangent up to which the front face of a view holds receivers; side faces hold the rest.
 fn reach(settings: &Settings) -> f32 {
-    match settings.technique {
-        Technique::ReferenceMaps => POINT_REACH,
-        _ => FRONT_REACH,
+    match settings.technique.method().has_views_of_points() {
+        true => POINT_REACH,
+        false => FRONT_REACH,
     }
 }
 

@@ -5,7 +5,7 @@ use super::light::Draft;
 use crate::error::{Error, Result};
 use crate::gpu::Limits;
 use crate::shared::{LEVELS_MAX, ROOT_LEVELS};
-use crate::shot::Settings;
+use crate::technique::Settings;
 
 /// [level] Of an MSSM over a map of `side` × `side` texels, from single cells to the roots of the largest kernel.
 pub(super) fn mssm_levels(side: u32) -> u32 {

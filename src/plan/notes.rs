@@ -5,7 +5,8 @@ use super::survey::LightCoverage;
 use super::{LightPlan, Lighting, Plan};
 use crate::scene::AreaLight;
 use crate::shared::BIAS_ROUNDING;
-use crate::shot::{Settings, Shot};
+use crate::shot::Shot;
+use crate::technique::Settings;
 
 /// [share of the way from eye to target] A rounding of depths that is seen.
 const SEEN: f64 = 1e-3;

@@ -3,7 +3,7 @@
 use super::maps::mssm_levels;
 use super::{Lighting, Omission, Plan};
 use crate::frame::{Domain, Scope, counts};
-use crate::shot::{Shot, Technique};
+use crate::shot::Shot;
 
 impl Plan {
     fn omit(&mut self, what: impl Into<String>, reason: impl Into<String>) {
@@ -108,7 +108,7 @@ impl Plan {
                 ),
             );
         }
-        let packets = shot.settings.technique == Technique::PacketContour;
+        let packets = shot.settings.reads("packet", false) == Some(true);
         if packets && !recipe.has(Domain::PacketList) && recipe.has(Domain::PixelList) {
             self.omit(
                 format!("{name}: packet_visibility"),

@@ -4,7 +4,6 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::{LightPlan, Lighting, Plan, ViewSet};
 use crate::frame::Domain;
-use crate::shot::Technique;
 
 const MSSM_LEVELS: &str = "mssm levels";
 
@@ -91,9 +90,9 @@ impl Plan {
             .filter(|&face| (set.views.iter()).any(|view| view.view.face as usize == face))
             .map(|face| FACES[face])
             .collect();
-        let part = match set.settings.technique {
-            Technique::ReferenceMaps => "point",
-            _ => "sub-light",
+        let part = match set.settings.technique.method().has_views_of_points() {
+            true => "point",
+            false => "sub-light",
         };
         writeln!(
             out,

@@ -12,7 +12,8 @@ use crate::image::{Plane, RgbImage};
 use crate::plan::{Outputs, plan};
 use crate::render::{DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use crate::shared::{Costs, Counters};
-use crate::shot::{Settings, Shot};
+use crate::shot::Shot;
+use crate::technique::Settings;
 use crate::{Error, Result};
 
 use super::flicker::{all_lights, flicker};

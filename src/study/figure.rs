@@ -18,7 +18,8 @@ mod yang09_packets;
 
 use std::path::{Path, PathBuf};
 
-use crate::shot::{Settings, Shot};
+use crate::shot::Shot;
+use crate::technique::Settings;
 use crate::{Error, Result};
 
 pub use busy::Busy;

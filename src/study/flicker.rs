@@ -6,7 +6,7 @@ use crate::compare::faces_wholly;
 use crate::gpu::Gpu;
 use crate::render::{RenderOptions, Renderer};
 use crate::scene::AreaLight;
-use crate::shot::Settings;
+use crate::technique::Settings;
 use crate::{Error, Result};
 
 use super::subject::Subject;

@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::shot::Technique;
+use crate::technique::Technique;
 use crate::{Error, Result};
 
 use super::front::{error, front, time};

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::compare::Metrics;
 use crate::gpu::{Gpu, Timings};
-use crate::shot::Settings;
 use crate::spread::Spread;
+use crate::technique::Settings;
 
 /// Passes that rasterise; all others compute, copy or clear.
 const RASTER: [&str; 3] = ["gbuffer", "shadow_map", "peel"];

@@ -20,7 +20,8 @@ use crate::gpu::Gpu;
 use crate::image::Plane;
 use crate::plan::Outputs;
 use crate::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
-use crate::shot::{Settings, Shot};
+use crate::shot::Shot;
+use crate::technique::Settings;
 
 pub use cases::cases;
 pub use stage::Case;

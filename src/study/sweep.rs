@@ -2,126 +2,72 @@
 
 use std::collections::BTreeSet;
 
-use crate::Result;
-use crate::shot::{Occluders, Settings, Technique};
+use crate::technique::{KNOBS, Knob, Settings, Technique};
+use crate::{Error, Result};
 
-/// What to try: the usual settings of each technique, and of each knob that is named all its values in place of the
-/// usual one. A knob without values stays as it is usual.
+/// What to try: the variants of each technique, and of each knob that has values here all of them in place of the usual
+/// one. A knob without values stays as it is usual.
 #[derive(Debug, Clone, Default)]
-pub struct Sweep {
-    /// Empty: all.
-    pub techniques: Vec<Technique>,
-    pub splits: Vec<u32>,
-    /// [texel]
-    pub maps: Vec<u32>,
-    /// [pixel]
-    pub packets: Vec<(u32, u32)>,
-    pub layers: Vec<u32>,
-    pub light_samples: Vec<u32>,
-    /// Of the filter; the search for blockers takes half of them.
-    pub filter_samples: Vec<u32>,
-    pub reference_maps: Vec<u32>,
-    /// [texel]
-    pub biases: Vec<f32>,
-}
+pub struct Sweep(pub Vec<(&'static Knob, Vec<String>)>);
 
 impl Sweep {
+    /// With these values of a knob, given by its field.
+    ///
+    /// # Errors
+    /// There is no such knob.
+    pub fn with(mut self, field: &str, values: &[&str]) -> Result<Self> {
+        let knob = KNOBS.iter().find(|knob| knob.field == field);
+        let knob = knob.ok_or_else(|| Error::Invalid(format!("there is no knob {field}")))?;
+        let values = values.iter().map(|&value| value.to_owned());
+        self.0.push((knob, values.collect()));
+        Ok(self)
+    }
+
     /// All combinations, each once: knobs that a technique does not read multiply nothing.
-    pub fn settings(&self) -> Vec<Settings> {
-        let mut all = self.combinations();
+    ///
+    /// # Errors
+    /// A value is none of its knob's, or out of its range, whether or not a technique reads it.
+    pub fn settings(&self) -> Result<Vec<Settings>> {
+        let mut all = self.combinations()?;
+        all.iter().try_for_each(Settings::validate)?;
         let mut known = BTreeSet::new();
         all.retain(|settings| known.insert(settings.flags()));
-        all
+        Ok(all)
     }
 
-    /// # Errors
-    /// A value is out of its range, whether or not a technique reads it.
-    pub fn validate(&self) -> Result<()> {
-        self.combinations().iter().try_for_each(Settings::validate)
-    }
-
-    fn combinations(&self) -> Vec<Settings> {
-        let techniques = match self.techniques.is_empty() {
-            true => Technique::ALL,
-            false => &self.techniques,
-        };
-        let mut all: Vec<Settings> = techniques
-            .iter()
-            .flat_map(|&technique| usual_settings(technique))
+    fn combinations(&self) -> Result<Vec<Settings>> {
+        let mut all: Vec<Settings> = self
+            .techniques()?
+            .into_iter()
+            .flat_map(Technique::variants)
             .collect();
-        vary(&mut all, &self.splits, |settings, &split| {
-            settings.split = split;
-        });
-        vary(&mut all, &self.maps, |settings, &map| settings.map = map);
-        vary(&mut all, &self.packets, |settings, &packet| {
-            settings.packet = packet;
-        });
-        vary(&mut all, &self.layers, |settings, &layers| {
-            settings.layers = layers;
-        });
-        vary(&mut all, &self.light_samples, |settings, &samples| {
-            settings.light_samples = samples;
-        });
-        vary(&mut all, &self.filter_samples, |settings, &samples| {
-            settings.filter_samples = samples;
-            settings.blocker_samples = (samples / 2).max(1);
-        });
-        vary(&mut all, &self.reference_maps, |settings, &maps| {
-            settings.maps = maps;
-        });
-        vary(&mut all, &self.biases, |settings, &bias| {
-            settings.bias = Some(bias);
-        });
-        all
+        let others = self.0.iter().filter(|(knob, _)| knob.field != "technique");
+        for (knob, values) in others.filter(|(_, values)| !values.is_empty()) {
+            let mut varied = Vec::new();
+            for settings in &all {
+                for value in values {
+                    let mut settings = settings.clone();
+                    knob.set(&mut settings, value)?;
+                    settings
+                        .technique
+                        .method()
+                        .follow(knob.field, &mut settings);
+                    varied.push(settings);
+                }
+            }
+            all = varied;
+        }
+        Ok(all)
     }
-}
 
-/// Each of `all` with each of `values`; as they are without values.
-fn vary<T>(all: &mut Vec<Settings>, values: &[T], set: impl Fn(&mut Settings, &T)) {
-    if values.is_empty() {
-        return;
-    }
-    let varied = all.iter().flat_map(|settings| {
-        values.iter().map(|value| {
-            let mut settings = settings.clone();
-            set(&mut settings, value);
-            settings
-        })
-    });
-    *all = varied.collect();
-}
-
-/// The settings by which a technique is compared with others: those of its publication, and its variants.
-pub fn usual_settings(technique: Technique) -> Vec<Settings> {
-    let usual = Settings::usual(technique);
-    let with = |change: fn(&mut Settings)| {
-        let mut settings = usual.clone();
-        change(&mut settings);
-        settings
-    };
-    match technique {
-        Technique::PacketContour => vec![
-            with(|settings| settings.split = 1),
-            with(|settings| settings.split = 2),
-            usual,
-        ],
-        Technique::PixelContour => vec![with(|settings| settings.hierarchical = true), usual],
-        Technique::Micropatch => vec![with(|settings| settings.gap_filling = false), usual],
-        Technique::Bitmask => vec![
-            with(|settings| settings.light_samples = 8),
-            with(|settings| settings.layers = 2),
-            usual,
-        ],
-        Technique::DepthPeeling => vec![
-            with(|settings| {
-                settings.layers = 2;
-                settings.occluders = Occluders::Contours;
-            }),
-            usual,
-        ],
-        Technique::Hard => vec![with(|settings| settings.percentage_closer = true), usual],
-        Technique::ReferenceMaps => vec![with(|settings| settings.maps = 256)],
-        Technique::MicropatchHierarchical | Technique::Pcss => vec![usual],
+    /// Those that are named, or all.
+    fn techniques(&self) -> Result<Vec<Technique>> {
+        let named = self.0.iter().filter(|(knob, _)| knob.field == "technique");
+        let named: Vec<&String> = named.flat_map(|(_, values)| values).collect();
+        match named.is_empty() {
+            true => Ok(Technique::ALL.to_vec()),
+            false => named.into_iter().map(|name| name.parse()).collect(),
+        }
     }
 }
 
@@ -129,40 +75,50 @@ pub fn usual_settings(technique: Technique) -> Vec<Settings> {
 mod tests {
     use super::*;
 
+    fn values(field: &str, values: &[&str]) -> Sweep {
+        Sweep::default().with(field, values).unwrap()
+    }
+
     #[test]
-    fn without_knobs_it_is_the_usual_settings() {
-        let all = Sweep::default().settings();
-        let usual: Vec<Settings> = Technique::ALL
+    fn without_knobs_it_is_the_variants() {
+        let all = Sweep::default().settings().unwrap();
+        let variants = Technique::ALL
             .iter()
-            .flat_map(|&technique| usual_settings(technique))
-            .collect();
-        assert_eq!(all, usual);
-        all.iter().for_each(|settings| settings.validate().unwrap());
+            .flat_map(|technique| technique.variants());
+        assert_eq!(all, variants.collect::<Vec<_>>());
     }
 
     #[test]
     fn knobs_multiply_where_they_are_read() {
-        let sweep = Sweep {
-            techniques: vec![Technique::PacketContour, Technique::Hard],
-            splits: vec![1, 2],
-            maps: vec![64, 128, 256],
-            packets: vec![(2, 2), (4, 4)],
-            ..Sweep::default()
-        };
+        let sweep = values("technique", &["packet-contour", "hard"])
+            .with("split", &["1", "2"])
+            .and_then(|sweep| sweep.with("map", &["64", "128", "256"]))
+            .and_then(|sweep| sweep.with("packet", &["2x2", "4x4"]))
+            .unwrap();
         // Packets: 2 splits × 3 maps × 2 packets; hard: nearest and 3×3, times 2 splits × 3 maps.
-        assert_eq!(sweep.settings().len(), 12 + 12);
-        sweep.validate().unwrap();
+        assert_eq!(sweep.settings().unwrap().len(), 12 + 12);
     }
 
     #[test]
     fn values_out_of_range_are_refused_where_nothing_reads_them_too() {
-        let sweep = Sweep {
-            techniques: vec![Technique::Hard],
-            layers: vec![1, 9],
-            ..Sweep::default()
-        };
-        assert!(sweep.settings().iter().all(|settings| settings.layers == 1));
-        let error = sweep.validate().unwrap_err().to_string();
+        let sweep = values("technique", &["hard"])
+            .with("layers", &["1", "9"])
+            .unwrap();
+        let error = sweep.settings().unwrap_err().to_string();
         assert!(error.contains("1 to 4, not 9"), "{error}");
+    }
+
+    #[test]
+    fn the_search_for_blockers_takes_half_the_filters_samples() {
+        let sweep = values("technique", &["pcss"])
+            .with("filter_samples", &["1", "64"])
+            .unwrap();
+        let blockers = sweep
+            .settings()
+            .unwrap()
+            .iter()
+            .map(|s| s.blocker_samples)
+            .collect::<Vec<_>>();
+        assert_eq!(blockers, [1, 32]);
     }
 }

@@ -5,14 +5,29 @@
 //! jittered samples break them up, always in the same way); occluders shrink by half a texel, and what is a single
 //! sample wide is missed; with one layer, what the centre of the light cannot see is missed too.
 
-use super::Recipe;
-use crate::shot::Settings;
+use super::{Method, Recipe, Settings, with};
 
-pub fn recipe(settings: &Settings) -> Recipe {
-    let layers = settings.layers;
-    Recipe {
-        layers: if layers > 1 { layers } else { 0 },
-        words: (settings.light_samples * settings.light_samples).div_ceil(32),
-        ..Recipe::over_pixels("bitmask_visibility", "bitmask_visibility.comp")
+pub struct Bitmask;
+
+impl Method for Bitmask {
+    fn recipe(&self, settings: &Settings) -> Recipe {
+        let layers = settings.layers;
+        Recipe {
+            layers: if layers > 1 { layers } else { 0 },
+            words: (settings.light_samples * settings.light_samples).div_ceil(32),
+            ..Recipe::over_pixels("bitmask_visibility", "bitmask_visibility.comp")
+        }
+    }
+
+    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
+        vec!["split", "light-samples", "pattern", "layers"]
+    }
+
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        vec![
+            with(&usual, |settings| settings.light_samples = 8),
+            with(&usual, |settings| settings.layers = 2),
+            usual,
+        ]
     }
 }

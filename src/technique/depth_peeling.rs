@@ -7,13 +7,39 @@
 //! DEVIATION [BCS08]: no midpoints between layers against self-shadowing, but a slope bias. Contours, not patches, leave
 //! out samples below the receiver's plane, as in `packet_contour`.
 
-use super::Recipe;
-use crate::shot::Settings;
+use super::{Method, Occluders, Recipe, Settings, with};
 
-pub fn recipe(settings: &Settings) -> Recipe {
-    let layers = settings.layers;
-    Recipe {
-        layers: if layers > 1 { layers } else { 0 },
-        ..Recipe::over_pixels("depth_peeling_visibility", "depth_peeling_visibility.comp")
+pub struct DepthPeeling;
+
+impl Method for DepthPeeling {
+    fn recipe(&self, settings: &Settings) -> Recipe {
+        let layers = settings.layers;
+        Recipe {
+            layers: if layers > 1 { layers } else { 0 },
+            ..Recipe::over_pixels("depth_peeling_visibility", "depth_peeling_visibility.comp")
+        }
+    }
+
+    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
+        vec!["split", "layers", "occluders"]
+    }
+
+    fn bias(&self, settings: &Settings) -> f32 {
+        match settings.occluders {
+            Occluders::Contours => super::CONTOUR_BIAS,
+            Occluders::Micropatches => 1.0,
+        }
+    }
+
+    fn make_usual(&self, settings: &mut Settings) {
+        (settings.split, settings.layers) = (1, 4);
+    }
+
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        let contours = with(&usual, |settings| {
+            settings.layers = 2;
+            settings.occluders = Occluders::Contours;
+        });
+        vec![contours, usual]
     }
 }

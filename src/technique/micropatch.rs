@@ -6,8 +6,20 @@
 //! and below and lets occluders grow. A texel is opaque to its border, so occluders are too large by up to half a
 //! texel; what the centre of the light cannot see is missed.
 
-use super::Recipe;
+use super::{Method, Recipe, Settings, with};
 
-pub fn recipe() -> Recipe {
-    Recipe::over_pixels("micropatch_visibility", "micropatch_visibility.comp")
+pub struct Micropatch;
+
+impl Method for Micropatch {
+    fn recipe(&self, _settings: &Settings) -> Recipe {
+        Recipe::over_pixels("micropatch_visibility", "micropatch_visibility.comp")
+    }
+
+    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
+        vec!["split", "no-gap-filling"]
+    }
+
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        vec![with(&usual, |settings| settings.gap_filling = false), usual]
+    }
 }

@@ -4,11 +4,19 @@
 //! Right and wrong as `micropatch`, whose patches it finds. Occluders cannot be pruned: each of their texels is a
 //! patch, where contours have only their borders to visit.
 
-use super::Recipe;
+use super::{Method, Recipe, Settings};
 
-pub fn recipe() -> Recipe {
-    Recipe {
-        hsm: true,
-        ..Recipe::over_pixels("micropatch_visibility", "micropatch_tree_visibility.comp")
+pub struct MicropatchHierarchical;
+
+impl Method for MicropatchHierarchical {
+    fn recipe(&self, _settings: &Settings) -> Recipe {
+        Recipe {
+            hsm: true,
+            ..Recipe::over_pixels("micropatch_visibility", "micropatch_tree_visibility.comp")
+        }
+    }
+
+    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
+        vec!["split", "no-gap-filling"]
     }
 }

@@ -6,9 +6,11 @@
 //! DEVIATION [Yang09]: samples below the receiver's plane do not occlude (`limit_at`), so that tilted surfaces are no
 //! occluders of themselves.
 
-use super::{CLASSIFY, KERNELS, PIXELS, Recipe, TURNS_OF_WALKS, once};
+use super::{
+    CLASSIFY, CONTOUR_BIAS, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings,
+    TURNS_OF_WALKS, once, with,
+};
 use crate::frame::{Domain, Pass};
-use crate::shot::Settings;
 
 const PACKETS: Pass = Pass::dispatch(
     "packet_visibility",
@@ -17,17 +19,62 @@ const PACKETS: Pass = Pass::dispatch(
 );
 
 /// A packet of a single pixel is a pixel: the pixel-wise path.
-pub fn recipe(settings: &Settings) -> Recipe {
-    let passes = if settings.packet == (1, 1) {
-        once([KERNELS, CLASSIFY, PIXELS])
-    } else {
-        once([KERNELS, CLASSIFY, PACKETS, PIXELS])
-    };
-    Recipe {
-        mssm: true,
-        words: 1,
-        turns: TURNS_OF_WALKS,
-        passes,
-        ..Recipe::default()
+fn has_packets(settings: &Settings) -> bool {
+    settings.packet != (1, 1)
+}
+
+pub struct PacketContour;
+
+impl Method for PacketContour {
+    fn recipe(&self, settings: &Settings) -> Recipe {
+        let passes = match has_packets(settings) {
+            true => once([KERNELS, CLASSIFY, PACKETS, PIXELS]),
+            false => once([KERNELS, CLASSIFY, PIXELS]),
+        };
+        Recipe {
+            mssm: true,
+            words: 1,
+            turns: TURNS_OF_WALKS,
+            passes,
+            ..Recipe::default()
+        }
+    }
+
+    fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
+        let mut knobs = vec!["split", "packet", "near-points", "no-footprint-pruning"];
+        if has_packets(settings) {
+            knobs.extend(["leaf", "mapping"]);
+        }
+        knobs
+    }
+
+    fn constants(&self, settings: &Settings) -> Vec<(&'static str, u32)> {
+        let (width, height) = settings.packet;
+        let held = match settings.mapping {
+            Mapping::Lanes => 1,
+            Mapping::Serial => width * height,
+        };
+        vec![
+            ("PACKET_WIDTH", width),
+            ("PACKET_HEIGHT", height),
+            ("HELD", held),
+            ("REPROCESS", (settings.leaf == Leaf::Reprocess).into()),
+            ("CONTOURS", 1),
+        ]
+    }
+
+    fn bias(&self, _settings: &Settings) -> f32 {
+        CONTOUR_BIAS
+    }
+
+    /// The defaults are its own.
+    fn make_usual(&self, _settings: &mut Settings) {}
+
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        vec![
+            with(&usual, |settings| settings.split = 1),
+            with(&usual, |settings| settings.split = 2),
+            usual,
+        ]
     }
 }

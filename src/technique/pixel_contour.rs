@@ -5,14 +5,35 @@
 //! Right and wrong as `packet_contour`, whose baseline it is: flat over every cell of the kernel, or
 //! hierarchical over the MSSM.
 
-use super::{CLASSIFY, KERNELS, PIXELS, Recipe, TURNS_OF_WALKS, once};
-use crate::shot::Settings;
+use super::{
+    CLASSIFY, CONTOUR_BIAS, KERNELS, Method, PIXELS, Recipe, Settings, TURNS_OF_WALKS, once, with,
+};
 
-pub fn recipe(settings: &Settings) -> Recipe {
-    let mut recipe = Recipe::over_pixels("contour_visibility", "contour_visibility.comp");
-    if settings.hierarchical {
-        recipe.passes = once([KERNELS, CLASSIFY, PIXELS]);
-        recipe.turns = TURNS_OF_WALKS;
+pub struct PixelContour;
+
+impl Method for PixelContour {
+    fn recipe(&self, settings: &Settings) -> Recipe {
+        let mut recipe = Recipe::over_pixels("contour_visibility", "contour_visibility.comp");
+        if settings.hierarchical {
+            recipe.passes = once([KERNELS, CLASSIFY, PIXELS]);
+            recipe.turns = TURNS_OF_WALKS;
+        }
+        recipe
     }
-    recipe
+
+    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
+        vec!["split", "hierarchical"]
+    }
+
+    fn constants(&self, _settings: &Settings) -> Vec<(&'static str, u32)> {
+        vec![("CONTOURS", 1), ("FOOTPRINT", 0)]
+    }
+
+    fn bias(&self, _settings: &Settings) -> f32 {
+        CONTOUR_BIAS
+    }
+
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        vec![with(&usual, |settings| settings.hierarchical = true), usual]
+    }
 }

@@ -8,20 +8,48 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::{Recipe, hard};
+use super::{Method, Recipe, Settings, hard, with};
 use crate::scene::{AreaLight, LightShape};
-use crate::shot::Settings;
 use crate::sub_light::Part;
 
-pub fn recipe() -> Recipe {
-    hard::recipe()
+pub struct ReferenceMaps;
+
+impl Method for ReferenceMaps {
+    fn recipe(&self, _settings: &Settings) -> Recipe {
+        hard::recipe()
+    }
+
+    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
+        vec!["maps"]
+    }
+
+    /// The nearest sample is within half a texel.
+    fn bias(&self, _settings: &Settings) -> f32 {
+        0.5
+    }
+
+    fn variants(&self, usual: Settings) -> Vec<Settings> {
+        vec![with(&usual, |settings| settings.maps = 256)]
+    }
+
+    fn parts(&self, light: &AreaLight, settings: &Settings) -> Vec<Part> {
+        points(light, settings.maps)
+    }
+
+    fn samples_points(&self) -> bool {
+        true
+    }
+
+    fn has_views_of_points(&self) -> bool {
+        true
+    }
 }
 
 /// The plastic number: powers of its inverse place the points of Roberts' R2 sequence.
 const PLASTIC: f64 = 1.324_717_957_244_746;
 
 /// Points of a low-discrepancy sequence on the light, all of the same weight.
-pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
+fn points(light: &AreaLight, count: u32) -> Vec<Part> {
     let point = |index: u32| {
         let share = DVec2::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC)) * f64::from(index);
         let at = (share + 0.5).fract();
@@ -31,5 +59,5 @@ pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
         };
         Part::point(at)
     };
-    (0..settings.maps).map(point).collect()
+    (0..count).map(point).collect()
 }

@@ -139,7 +139,7 @@ fn flags_that_lights_without_extent_do_not_read() {
     folder.write_shot(&shot);
     assert_eq!(
         ignored(&folder, "shot.json", &flags),
-        ["--technique", "--packet", "--split"]
+        ["--technique", "--split", "--packet"]
     );
     let hard = ["--technique", "hard", "--percentage-closer", "--bias", "1"];
     assert!(ignored(&folder, "shot.json", &hard).is_empty());

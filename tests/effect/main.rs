@@ -21,7 +21,8 @@ use halfshade::render::{
 };
 use halfshade::scene::{AreaLight, LightShape};
 use halfshade::shared::{Fit, NORMAL_SIGNED, View};
-use halfshade::shot::{Settings, Shot};
+use halfshade::shot::Shot;
+use halfshade::technique::Settings;
 
 use host::{Host, with_host};
 

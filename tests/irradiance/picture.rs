@@ -9,7 +9,8 @@ use halfshade::plan::{Outputs, plan};
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use halfshade::scene::{AreaLight, LightShape, Scene};
 use halfshade::shared::Light;
-use halfshade::shot::{Settings, Shot, Technique};
+use halfshade::shot::Shot;
+use halfshade::technique::{Settings, Technique};
 
 use crate::support::{Triangles, camera, light, shot, with_gpu};
 

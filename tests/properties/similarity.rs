@@ -2,7 +2,7 @@
 //! other packets, another resolution.
 
 use glam::DMat3;
-use halfshade::shot::{Leaf, Mapping};
+use halfshade::technique::{Leaf, Mapping};
 
 use super::*;
 

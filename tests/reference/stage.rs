@@ -6,7 +6,8 @@ use std::sync::atomic::AtomicBool;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use halfshade::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
 use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
-use halfshade::shot::{Settings, Shot};
+use halfshade::shot::Shot;
+use halfshade::technique::Settings;
 
 /// [scene units] Heights above the floor: of the occluder and of the light.
 pub const OCCLUDER: f64 = 1.0;

@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use halfshade::shot::{Overrides, Shot, Technique};
+use halfshade::shot::{Overrides, Shot};
 use halfshade::study::figure::{
     EXPERIMENTS, Experiment, Lab, NamedShot, Report, Row, Scale, Verdict,
 };
+use halfshade::technique::Technique;
 use serde_json::Value;
 
 use super::command::program;

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use halfshade::compare::Metrics;
 use halfshade::image::RgbImage;
-use halfshade::shot::{Settings, Technique};
 use halfshade::spread::Spread;
 use halfshade::study::{Errors, Machine, Measured, Outcome, Pictures, Run};
+use halfshade::technique::{Settings, Technique};
 
 /// A run of a shot that took so many ms and has this error.
 pub fn run(shot: &str, technique: Technique, ms: f64, error: f64) -> Run {

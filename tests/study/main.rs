@@ -20,8 +20,9 @@ use halfshade::Error;
 use halfshade::cpu::reference::ReferenceOptions;
 use halfshade::image::Plane;
 use halfshade::render::DEFAULT_COSTS;
-use halfshade::shot::{Overrides, Settings, Technique};
+use halfshade::shot::Overrides;
 use halfshade::study::{Bench, Folder, Outcome, Protocol, Subject, front};
+use halfshade::technique::{Settings, Technique};
 use support::with_gpu;
 
 const PROTOCOL: Protocol = Protocol {

@@ -7,8 +7,8 @@ use std::process::{Child, Command, Stdio};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use halfshade::shot::Technique;
 use halfshade::study::{Folder, Outcome, Run};
+use halfshade::technique::Technique;
 use serde_json::{Value, json};
 
 use super::made_up;

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::SystemTime;
 
-use halfshade::shot::Technique;
-use halfshade::study::usual_settings;
+use halfshade::technique::Technique;
 
 use super::command::{at_home, program};
 
@@ -197,7 +196,7 @@ fn wrong_use_is_refused_in_a_sentence() {
 fn the_program_takes_the_flags_of_all_settings() {
     for settings in Technique::ALL
         .iter()
-        .flat_map(|&technique| usual_settings(technique))
+        .flat_map(|&technique| technique.variants())
     {
         let output = program()
             .args(["plan", &plate()])

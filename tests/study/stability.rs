@@ -3,8 +3,8 @@
 use std::sync::atomic::AtomicBool;
 
 use halfshade::plan::{Outputs, plan};
-use halfshade::shot::{Settings, Technique};
 use halfshade::study::stability::{cases, csv, examine, summary, truth};
+use halfshade::technique::{Settings, Technique};
 
 use super::support::with_gpu;
 

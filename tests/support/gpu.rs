@@ -10,7 +10,8 @@ use halfshade::plan::{Outputs, Plan};
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
 use halfshade::shared::Fit;
-use halfshade::shot::{Overrides, Settings, Shot};
+use halfshade::shot::{Overrides, Shot};
+use halfshade::technique::Settings;
 
 /// The scenes of the repository that have a shot file.
 pub const SCENES: [&str; 6] = ["plate", "knot", "staircase", "grid", "colonnade", "tree"];

@@ -1,7 +1,7 @@
 //! What each technique is known to get wrong.
 
 use glam::{DVec2, DVec3};
-use halfshade::shot::{Occluders, Pattern, Settings, Technique};
+use halfshade::technique::{Occluders, Pattern, Settings, Technique};
 
 use super::support::{Triangles, camera, rectangle, rectangle_light, shot, visibility, with_gpu};
 

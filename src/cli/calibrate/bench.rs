@@ -9,8 +9,9 @@ use halfshade::calibrate::{Measured, race};
 use halfshade::gpu::Gpu;
 use halfshade::plan::Outputs;
 use halfshade::render::{DEFAULT_EXPOSURE, Frame, RenderOptions, Renderer};
-use halfshade::shot::{Overrides, Settings, Shot, Technique};
+use halfshade::shot::{Overrides, Shot};
 use halfshade::study::is_traversal;
+use halfshade::technique::{Settings, Technique};
 use halfshade::{Error, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 

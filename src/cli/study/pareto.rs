@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use halfshade::gpu::Gpu;
-use halfshade::shot::Settings;
 use halfshade::study::{Bench, Folder, Machine, Shard, Subject, front, key};
+use halfshade::technique::Settings;
 use halfshade::{Error, Result};
 use indicatif::ProgressBar;
 
@@ -91,7 +91,7 @@ fn check_apart(folder: &Folder, read: &[PathBuf]) -> Result<()> {
 
 fn measure(args: &Args, gpu: &Arc<Gpu>, folder: &Folder) -> Result<()> {
     let setting = Setting::new(gpu)?;
-    let all = args.sweep.settings(&setting.calibration);
+    let all = args.sweep.settings(&setting.calibration)?;
     let protocol = (args.protocol).protocol(&setting.calibration, args.counters, args.flicker);
     let bench = Bench::new(gpu, protocol, &setting.interrupted);
     let machine = Machine::of(gpu);

@@ -6,8 +6,8 @@ use std::sync::atomic::Ordering;
 
 use halfshade::gpu::Gpu;
 use halfshade::image::{check_writable, write_atomically};
-use halfshade::shot::{Settings, Technique};
 use halfshade::study::stability::{Case, Finding, cases, csv, examine, summary, truth};
+use halfshade::technique::{Settings, Technique};
 use halfshade::{Error, Result};
 
 use super::super::outputs::{self, Format, Output};

@@ -6,12 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use halfshade::cpu::reference::ReferenceOptions;
 use halfshade::gpu::Gpu;
-use halfshade::shot::{Overrides, Settings, Shot, Technique};
-use halfshade::study::{Protocol, Subject, Sweep};
+use halfshade::shot::{Overrides, Shot};
+use halfshade::study::{Protocol, Subject};
+use halfshade::technique::Settings;
 use halfshade::{Error, Result};
 
 use super::super::calibration::Calibration;
-use super::super::shot_args::parse_packet;
+use super::super::knob_args::SweepValues;
 use super::super::{
     REPEAT, SAMPLES, parse_size, print_note, print_notes, progress, project_folders,
 };
@@ -19,97 +20,35 @@ use super::super::{
 /// What to try. Values are separated by commas; a knob that a technique does not read multiplies nothing.
 #[derive(Debug, clap::Args)]
 pub struct SweepArgs {
-    /// Techniques [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    techniques: Vec<Technique>,
-    /// Values of --split [default: packet-contour 1,2,4, rivals 1]
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
-    splits: Vec<u32>,
-    /// Values of --map
-    #[arg(
-        long,
-        value_name = "TEXELS",
-        value_delimiter = ',',
-        default_value = "256,512,1024"
-    )]
-    maps: Vec<u32>,
-    /// Values of --packet [default: this device's]
-    #[arg(long, value_name = "WxH", value_delimiter = ',', value_parser = parse_packet)]
-    packets: Vec<(u32, u32)>,
-    /// Values of --layers [default: each technique's usual ones]
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
-    layers: Vec<u32>,
-    /// Values of --light-samples [default: 8,16]
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
-    light_samples: Vec<u32>,
-    /// Values of --filter-samples, with half as many --blocker-samples [default: 32]
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
-    filter_samples: Vec<u32>,
-    /// Values of --maps of reference-maps [default: 256]
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
-    reference_maps: Vec<u32>,
-    /// Values of --bias [default: each technique's own]
-    #[arg(long, value_name = "TEXELS", value_delimiter = ',')]
-    biases: Vec<f32>,
+    #[command(flatten)]
+    values: SweepValues,
 }
 
 impl SweepArgs {
     /// # Errors
     /// A value is out of its range.
     pub fn check(&self) -> Result<()> {
-        self.sweep(&Calibration::default()).validate()
+        let sweep = self.values.sweep(&Calibration::default());
+        sweep.settings().map(drop)
     }
 
     /// All settings to try; packets, mapping and leaf rule as calibrated where no flag names them. A flag that none of
     /// them reads is noted on stderr.
-    pub fn settings(&self, calibration: &Calibration) -> Vec<Settings> {
-        let mut all = self.sweep(calibration).settings();
+    ///
+    /// # Errors
+    /// As for [`Self::check`].
+    pub fn settings(&self, calibration: &Calibration) -> Result<Vec<Settings>> {
+        let mut all = self.values.sweep(calibration).settings()?;
         for settings in &mut all {
             settings.leaf = calibration.leaf;
             settings.mapping = calibration.mapping;
         }
-        for (flag, knob, is_given) in [
-            ("splits", "split", !self.splits.is_empty()),
-            ("packets", "packet", !self.packets.is_empty()),
-            ("layers", "layers", !self.layers.is_empty()),
-            (
-                "light-samples",
-                "light-samples",
-                !self.light_samples.is_empty(),
-            ),
-            (
-                "filter-samples",
-                "filter-samples",
-                !self.filter_samples.is_empty(),
-            ),
-            ("reference-maps", "maps", !self.reference_maps.is_empty()),
-        ] {
-            let is_read = |settings: &Settings| settings.reads(knob, false) == Some(true);
-            if is_given && !all.iter().any(is_read) {
-                print_note(&format!(
-                    "--{flag} is ignored, for none of the techniques reads it."
-                ));
-            }
+        for flag in self.values.unread(&all) {
+            print_note(&format!(
+                "--{flag} is ignored, for none of the techniques reads it."
+            ));
         }
-        all
-    }
-
-    fn sweep(&self, calibration: &Calibration) -> Sweep {
-        Sweep {
-            techniques: self.techniques.clone(),
-            splits: self.splits.clone(),
-            maps: self.maps.clone(),
-            packets: match self.packets.is_empty() {
-                true => vec![calibration.packet],
-                false => self.packets.clone(),
-            },
-            layers: self.layers.clone(),
-            light_samples: self.light_samples.clone(),
-            filter_samples: self.filter_samples.clone(),
-            reference_maps: self.reference_maps.clone(),
-            // Adding 0 takes the sign from −0.
-            biases: self.biases.iter().map(|bias| bias + 0.0).collect(),
-        }
+        Ok(all)
     }
 }
 

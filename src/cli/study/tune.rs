@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use halfshade::cpu::reference::SAMPLES;
 use halfshade::gpu::Gpu;
-use halfshade::shot::Settings;
 use halfshade::study::{Bench, Goal, Protocol, Run, Subject, best};
+use halfshade::technique::Settings;
 use halfshade::{Error, Result};
 
 use super::super::shot_args::DeviceArgs;
@@ -74,7 +74,7 @@ fn goal(args: &Args) -> Result<Goal> {
 /// Runs of the finalists, or of all candidates if none of them reaches the goal.
 fn measure(args: &Args, gpu: &Arc<Gpu>, goal: Goal) -> Result<Vec<Run>> {
     let setting = Setting::new(gpu)?;
-    let all = args.sweep.settings(&setting.calibration);
+    let all = args.sweep.settings(&setting.calibration)?;
     let protocol = args.protocol.protocol(&setting.calibration, false, 0);
     let subject = subject(args, goal, &setting.interrupted)?;
     let look = |repeat, settings| {

@@ -5,7 +5,7 @@ use super::row::{Curve, ERROR, SHADOW_PIXELS};
 use super::stage::{Model, Stage};
 use super::{Candidate, Experiment, Row, Scale, Trial};
 use crate::Result;
-use crate::shot::{Settings, Technique};
+use crate::technique::{Settings, Technique};
 
 /// The sum of what back-projected patches hide, pixel by pixel: what [Atty06] sums in a texture.
 pub const PATCHES: &str = "micropatches with gaps";

@@ -5,7 +5,7 @@ use super::check::{CLEAR, Check, all, number, numbers};
 use super::row::{Curve, ERROR, ERROR_ASIDE, TIME, TIME_MAX, TIME_MIN, only_scene};
 use super::stage::{Model, Stage, knot};
 use super::{Candidate, Experiment, Row, Trial};
-use crate::shot::{Settings, Technique};
+use crate::technique::{Settings, Technique};
 
 const CONTOURS: &str = "packet-contour, S = 1";
 /// Exponents that count as linear.

@@ -3,7 +3,8 @@
 use super::check::{Check, number, numbers};
 use super::row::{Curve, ERROR, TIME, TIME_MAX, TIME_MIN, distinct};
 use super::{Candidate, Column, Experiment, NamedShot, Row, Trial, Truth};
-use crate::shot::{Overrides, Settings, Shot, Technique};
+use crate::shot::{Overrides, Shot};
+use crate::technique::{Settings, Technique};
 
 /// The scenes without any of the user's.
 const SCENES: [&str; 4] = ["knot", "staircase", "colonnade", "tree"];

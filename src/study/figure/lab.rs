@@ -9,8 +9,8 @@ use std::sync::atomic::AtomicBool;
 use crate::cpu::reference::ReferenceOptions;
 use crate::gpu::Gpu;
 use crate::render::DEFAULT_COSTS;
-use crate::shot::Settings;
 use crate::spread::Spread;
+use crate::technique::Settings;
 use crate::{Error, Result};
 
 use super::super::bench::{Bench, Protocol};

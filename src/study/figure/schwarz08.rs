@@ -4,7 +4,8 @@ use super::check::{CLEAR, Check, all, number, numbers};
 use super::row::{Curve, ERROR_ASIDE};
 use super::{Candidate, Column, Experiment, Row, Trial, Truth};
 use crate::Result;
-use crate::shot::{Overrides, Settings, Shot, Technique};
+use crate::shot::{Overrides, Shot};
+use crate::technique::{Settings, Technique};
 
 const MIB: f64 = 1024.0 * 1024.0;
 /// Built-in shots: kernels that need all levels of an MSSM, and kernels that are quickly done with micropatches.

@@ -7,7 +7,8 @@ use glam::{DVec3, Vec3};
 use super::Truth;
 use super::truth::Square;
 use crate::scene::{AreaLight, Camera, LightShape, Scene, Shape};
-use crate::shot::{Settings, Shot};
+use crate::shot::Shot;
+use crate::technique::Settings;
 
 /// [scene units] The longest side of an occluder: the largest light of [Atty06 §5.2.4] is about as large.
 pub const OCCLUDER: f64 = 0.2;

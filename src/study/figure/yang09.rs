@@ -5,7 +5,8 @@ use super::row::{Curve, ERROR, ERROR_ASIDE, TIME, TIME_MAX, TIME_MIN, distinct, 
 use super::{Candidate, Column, Experiment, Row, Trial, Truth};
 use crate::Result;
 use crate::scene::LightShape;
-use crate::shot::{Leaf, Overrides, Settings, Shot, Technique};
+use crate::shot::{Overrides, Shot};
+use crate::technique::{Leaf, Settings, Technique};
 
 /// The light sizes of [Yang09 fig. 9], in the paper's own unit.
 const LIGHTS: [f64; 3] = [40.0, 80.0, 160.0];

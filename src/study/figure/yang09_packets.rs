@@ -4,7 +4,8 @@ use super::check::{Check, all, number, numbers};
 use super::row::{Curve, ERROR_ASIDE, TIME_ASIDE, distinct, only_scene};
 use super::yang09::{FLAT, HIERARCHICAL, PACKETS, hierarchical, knot, packets, rival};
 use super::{Candidate, Column, Experiment, Row, Trial, Truth};
-use crate::shot::{Overrides, Settings, Shot, Technique};
+use crate::shot::{Overrides, Shot};
+use crate::technique::{Settings, Technique};
 
 /// [pixel] Sides of packets.
 const SIDES: [u32; 6] = [1, 2, 3, 4, 6, 8];

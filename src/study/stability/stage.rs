@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use crate::scene::{AreaLight, Camera, LightShape, Scene, Shape};
-use crate::shot::{Settings, Shot, Technique};
+use crate::shot::Shot;
+use crate::technique::{Settings, Technique};
 
 /// [pixel] Width and height of an image, unless its size is the case.
 const SIDE: u32 = 48;

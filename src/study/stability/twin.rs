@@ -10,7 +10,8 @@ use crate::cpu::radial::SubLight;
 use crate::cpu::resolve;
 use crate::image::Plane;
 use crate::render::Renderer;
-use crate::shot::{Shot, Technique};
+use crate::shot::Shot;
+use crate::technique::Technique;
 
 /// Cells of all views and pixels: beyond it the twin, which leaves nothing out, would take minutes.
 const WORK_MAX: u64 = 4 << 30;

@@ -1,0 +1,375 @@
+//! The settings of a technique: the table of all knobs, and what they come to.
+
+use super::choice::choice;
+use super::knob::{Access, Field, Knob, Row};
+use super::{Recipe, Technique};
+use crate::Result;
+use crate::scene::AreaLight;
+
+choice! {
+    /// What a leaf does whose status differs between the packet's pixels.
+    enum Leaf, "leaf mode" {
+        /// Null status: the whole packet goes to the pixel-wise list [Yang09 §4.1].
+        Reprocess = "reprocess",
+        /// The four comparisons are made for each pixel, all else is shared.
+        PerPixel = "per-pixel",
+    }
+}
+
+choice! {
+    /// How a packet's pixels map to shader invocations.
+    enum Mapping, "mapping" {
+        /// One invocation loops over the packet's pixels [Yang09 alg. 2].
+        Serial = "serial",
+        /// One invocation per pixel; all lanes of a packet walk the same stack.
+        Lanes = "lanes",
+    }
+}
+
+choice! {
+    /// Where the samples of a bitmask stand in the light's strata.
+    enum Pattern, "sample pattern" {
+        /// In their middles.
+        Regular = "regular",
+        /// Anywhere, the same for all pixels.
+        Jittered = "jittered",
+    }
+}
+
+choice! {
+    /// What the texels of a peeled layer stand for.
+    enum Occluders, "kind of occluder" {
+        /// A rectangle each.
+        Micropatches = "micropatches",
+        /// The area inside their contour.
+        Contours = "contours",
+    }
+}
+
+/// Declares [`Settings`] and the table of knobs: a row each, of a field with its type and default, and what [`Row`] says.
+macro_rules! settings {
+    ($($(#[$doc:meta])* $field:ident: $type:ty = $default:expr, $row:expr;)+) => {
+        /// A technique and its knobs.
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct Settings {
+            $($(#[$doc])* pub $field: $type,)+
+        }
+
+        impl Default for Settings {
+            fn default() -> Self {
+                Self { $($field: $default,)+ }
+            }
+        }
+
+        /// All knobs, in the order in which commands and tables name them.
+        pub static KNOBS: &[Knob] = &[$(Knob {
+            field: stringify!($field),
+            row: $row,
+            access: Access {
+                text: |settings| settings.$field.text(),
+                set_text: |settings, text| Field::parse(text).map(|value| settings.$field = value),
+                number: |settings| settings.$field.number(),
+                set_number: |settings, number| {
+                    Field::from_number(number).map(|value| settings.$field = value)
+                },
+                check: |settings, row| settings.$field.check(row),
+                names: <$type as Field>::names,
+            },
+        },)+];
+    };
+}
+
+settings! {
+    technique: Technique = Technique::PacketContour,
+        Row::value("technique", "NAME", "Which publication computes the visibility: {}")
+            .swept("techniques", "NAMES", "Techniques [default: all]");
+
+    /// [texel] [16, 8192] Width and height of a shadow map.
+    map: u32 = 512,
+        Row::value("map", "R", "Width and height of a shadow map in texels, 16 to 8192")
+            .within(16, 8192, "a shadow map is {} texels wide")
+            .swept("maps", "TEXELS", "Values of --map")
+            .swept_over("256,512,1024");
+
+    /// [texel] Bias along the receiver's plane, in texels of its slope; None: the usual one of what runs
+    /// ([`Settings::bias`]).
+    bias: Option<f32> = None,
+        Row::value(
+            "bias",
+            "TEXELS",
+            "Depth bias in texels of the receiver's slope, 0 or more \
+             [default: 0.25 with contours, 0.5 with reference-maps, 6 with pcss, else 1]",
+        )
+        .depends()
+        .finite("the bias is a finite number of texels from 0")
+        .swept("biases", "TEXELS", "Values of --bias [default: each technique's own]");
+
+    /// [1, 16] The light is cut into split × split sub-lights.
+    split: u32 = 4,
+        Row::value(
+            "split",
+            "N",
+            "Cut each light into N×N sub-lights, 1 to 16; 1 is fastest and leaks where occluders overlap \
+             [default: 4 with packet-contour, else 1]",
+        )
+        .depends()
+        .within(1, 16, "the light's split is {}")
+        .swept("splits", "NUMBERS", "Values of --split [default: packet-contour 1,2,4, rivals 1]");
+
+    /// [pixel] Width and height of a packet, each 1 to 8; 1×1 is the pixel-wise path.
+    packet: (u32, u32) = (4, 4),
+        Row::value(
+            "packet",
+            "WxH",
+            "Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path \
+             [default: calibrated, else 4x4]",
+        )
+        .depends()
+        .within(1, 8, "a packet is {} pixels")
+        .swept("packets", "WxH", "Values of --packet [default: this device's]");
+
+    leaf: Leaf = Leaf::PerPixel,
+        Row::value(
+            "leaf",
+            "RULE",
+            "What a leaf does where a packet's pixels disagree: {} \
+             [default: calibrated, else per-pixel]",
+        )
+        .depends();
+
+    mapping: Mapping = Mapping::Serial,
+        Row::value(
+            "mapping",
+            "MAPPING",
+            "How a packet maps to shader invocations: {} [default: calibrated, else serial]",
+        )
+        .depends()
+        .sets("LANES");
+
+    /// [point] [0, 4096] `PacketContour` only: on the whole light, of those that stand for sub-lights that an occluder is
+    /// nearer to than they are wide; fewer where side faces multiply their views; 0 = none, they are integrated all the
+    /// same.
+    near_points: u32 = 256,
+        Row::value(
+            "near-points",
+            "N",
+            "With packet-contour: points of the light that cast hard shadows, on all of it, where an occluder is \
+             nearer to sub-lights than they are wide, 0 to 4096; 0 = integrate these as well",
+        )
+        .within(0, 4096, "the number of points near occluders is {}");
+
+    /// 32 or 16: bits of a bound in the MSSM. With 16 they are conservative: half the memory, wider kernels.
+    mssm_bits: u32 = 32,
+        Row::value(
+            "mssm-bits",
+            "BITS",
+            "Bits of a depth bound in the hierarchy over the map, 32 or 16 (half its memory, the same image)",
+        )
+        .one_of(&[16, 32], "a bound of the MSSM has {} bits");
+
+    /// [8, 16] `Bitmask` only: the light has light_samples × light_samples samples.
+    light_samples: u32 = 16,
+        Row::value("light-samples", "N", "With bitmask: N×N samples of the light, 8 to 16")
+            .within(8, 16, "the number of samples along a side of the light is {}")
+            .sets("LIGHT_SAMPLES")
+            .swept("light-samples", "NUMBERS", "Values of --light-samples [default: 8,16]");
+
+    /// `Bitmask` only.
+    pattern: Pattern = Pattern::Jittered,
+        Row::value(
+            "pattern",
+            "NAME",
+            "With bitmask: where the light's samples stand, {}",
+        )
+        .sets("JITTERED");
+
+    /// [layer] [1, 4] `Bitmask` and `DepthPeeling` only: peeled layers of the shadow map.
+    layers: u32 = 1,
+        Row::value(
+            "layers",
+            "N",
+            "With bitmask and depth-peeling: layers of the shadow map, 1 to 4 \
+             [default: 4 with depth-peeling, else 1]",
+        )
+        .depends()
+        .within(1, 4, "the number of layers of a shadow map is {}")
+        .swept("layers", "NUMBERS", "Values of --layers [default: each technique's usual ones]");
+
+    /// `DepthPeeling` only.
+    occluders: Occluders = Occluders::Micropatches,
+        Row::value(
+            "occluders",
+            "KIND",
+            "With depth-peeling: what a layer's texels stand for, {}",
+        )
+        .sets("CONTOURS");
+
+    /// [sample] [1, 1024] `Pcss` only: of the blocker search.
+    blocker_samples: u32 = 16,
+        Row::value(
+            "blocker-samples",
+            "N",
+            "With pcss: samples of the search for blockers, 1 to 1024",
+        )
+        .within(1, 1024, "the number of samples of the blocker search is {}")
+        .sets("BLOCKER_SAMPLES");
+
+    /// [sample] [1, 1024] `Pcss` only: of the filter.
+    filter_samples: u32 = 32,
+        Row::value("filter-samples", "N", "With pcss: samples of the filter, 1 to 1024")
+            .within(1, 1024, "the number of samples of the filter is {}")
+            .sets("FILTER_SAMPLES")
+            .swept(
+                "filter-samples",
+                "NUMBERS",
+                "Values of --filter-samples, with half as many --blocker-samples [default: 32]",
+            );
+
+    /// [map] [1, 4096] `ReferenceMaps` only.
+    maps: u32 = 1024,
+        Row::value(
+            "maps",
+            "N",
+            "With reference-maps: hard shadow maps from points on the light, 1 to 4096",
+        )
+        .within(1, 4096, "the number of reference maps is {}")
+        .swept("reference-maps", "NUMBERS", "Values of --maps of reference-maps [default: 256]");
+
+    /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
+    footprint_pruning: bool = true,
+        Row::switch(
+            "no-footprint-pruning",
+            "Visit nodes whose back-projection misses the light as well, as the paper does",
+        )
+        .sets("FOOTPRINT");
+
+    /// `PixelContour` only: walk the MSSM instead of every cell.
+    hierarchical: bool = false,
+        Row::switch(
+            "hierarchical",
+            "With pixel-contour: walk the MSSM instead of every cell of the kernel",
+        );
+
+    /// `Micropatch…` only: patches reach out to where their left and bottom neighbours end.
+    gap_filling: bool = true,
+        Row::switch(
+            "no-gap-filling",
+            "With micropatch and micropatch-hierarchical: leave the gaps between patches open",
+        )
+        .sets("GAP_FILLING");
+
+    /// `Hard` only: the share of 3×3 samples instead of the nearest one.
+    percentage_closer: bool = false,
+        Row::switch(
+            "percentage-closer",
+            "With hard: the share of 3×3 samples that hide the pixel, instead of the nearest one",
+        )
+        .sets("FILTER_REACH");
+
+    /// Count pixels, packets, nodes and edges (costs time).
+    counters: bool = false,
+        Row::switch("counters", "Count pixels, packets, nodes and edges (takes time)").sets("COUNT");
+}
+
+/// Knobs that every technique reads, whatever its lights.
+const COMMON: [&str; 2] = ["map", "bias"];
+
+/// [texel] A map of a point that is no larger is not made smaller.
+const POINT_MAP: u32 = 128;
+
+impl Settings {
+    /// The settings that a technique is known by: rivals have a single view, as in their publications.
+    pub fn usual(technique: Technique) -> Self {
+        let mut usual = Self {
+            technique,
+            ..Self::default()
+        };
+        technique.method().make_usual(&mut usual);
+        usual
+    }
+
+    /// The usual settings, but that every sub-light is integrated, as in the publications.
+    pub fn published(technique: Technique) -> Self {
+        Self {
+            near_points: 0,
+            ..Self::usual(technique)
+        }
+    }
+
+    /// As they run for a light: one without extent casts a hard shadow, whatever the technique.
+    pub fn of_light(&self, light: &AreaLight) -> Self {
+        let mut settings = self.clone();
+        if light.is_point() && self.technique != Technique::Hard {
+            settings.technique = Technique::Hard;
+            settings.percentage_closer = false;
+        }
+        settings
+    }
+
+    /// As they run for points of the light that stand for a part of it: hard shadows of which the mean counts. A quarter of
+    /// the texels of large maps is enough, since a point's error is one of many.
+    pub fn of_points(&self) -> Self {
+        Self {
+            technique: Technique::ReferenceMaps,
+            map: (self.map / 2).max(self.map.min(POINT_MAP)),
+            bias: None,
+            ..self.clone()
+        }
+    }
+
+    /// [texel] The bias that is asked for, or else the usual one, with which the technique errs least: what covers the
+    /// way from a receiver to the samples that it is compared with.
+    pub fn bias(&self) -> f32 {
+        let usual = || self.technique.method().bias(self);
+        self.bias.unwrap_or_else(usual)
+    }
+
+    /// Whether sub-lights that an occluder is near to give way to points.
+    pub fn has_near_points(&self) -> bool {
+        self.near_points > 0 && self.reads("near-points", false) == Some(true)
+    }
+
+    /// Whether it is the light's points that cast shadows, hard ones.
+    pub fn samples_points(&self) -> bool {
+        self.technique.method().samples_points()
+    }
+
+    /// Whether these settings read a flag, given without its dashes. None: no technique does, it is no knob.
+    ///
+    /// `point`: for a light without extent, whose shadow is hard whatever the technique.
+    pub fn reads(&self, flag: &str, point: bool) -> Option<bool> {
+        KNOBS.iter().find(|knob| knob.row.flag == flag)?;
+        if COMMON.contains(&flag) {
+            return Some(true);
+        }
+        let mut own = self.technique.method().knobs(self);
+        if point {
+            // Sub-lights have no extent either, and another technique's knobs are not asked for.
+            own.retain(|knob| self.technique == Technique::Hard && *knob != "split");
+        }
+        let is_read = match flag {
+            "technique" => !point || self.technique == Technique::Hard,
+            "mssm-bits" => !point && Recipe::new(self).mssm,
+            "counters" => true,
+            _ => own.contains(&flag),
+        };
+        Some(is_read)
+    }
+
+    /// The specialization constants that the technique's shaders take, by name.
+    pub fn constants(&self) -> Vec<(&'static str, u32)> {
+        let read = KNOBS
+            .iter()
+            .filter(|knob| self.reads(knob.row.flag, false) == Some(true));
+        let constant = |knob: &Knob| Some((knob.row.constant?, knob.number(self)));
+        let mut constants: Vec<_> = read.filter_map(constant).collect();
+        constants.extend(self.technique.method().constants(self));
+        constants
+    }
+
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) when a setting is out of its range.
+    pub fn validate(&self) -> Result<()> {
+        KNOBS.iter().try_for_each(|knob| knob.check(self))
+    }
+}
