@@ -1,25 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
 // Leaves out the triangles that shadow no visible receiver of this view, appends the others to the
 // index list of its shadow map and reduces their bounds (algorithm.md §10). A triangle casts no
 // shadow when sub-light and receivers lie on one closed side of its plane, or when it lies outside the
 // region of the lines between them.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "caster_region.glsl"
+#include "caster_position.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 3, scalar) readonly buffer Positions { vec3 positions[]; };
-layout(binding = 4, scalar) readonly buffer Triangles { uvec3 triangles[]; };
-layout(binding = 5, scalar) writeonly buffer CasterIndices { uint caster_indices[]; };
-layout(binding = 6, scalar) readonly buffer PositionResiduals { vec3 position_residuals[]; };
-#include "caster_position.glsl"
+readonly BUFFER(frame);
+readonly BUFFER(views);
+BUFFER(fits);
+readonly BUFFER(triangles);
+writeonly BUFFER(caster_indices);
 
 // Upper bounds of one invocation's casters; see `Fit`.
 struct Reach {

@@ -3,24 +3,23 @@
 // Coherent packets go to the packet list, the pixels of the others to the pixel list
 // [Yang09 §4.3, eq. 4–6].
 #include "pass.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "kernel.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
-layout(binding = 5, scalar) readonly buffer Kernels { Kernel kernels[]; };
-layout(binding = 6, scalar) writeonly buffer Packets { Packet packets[]; };
-layout(binding = 7, scalar) writeonly buffer Pixels { uint pixels[]; };
-layout(binding = 8, scalar) readonly buffer CostsBlock { Costs costs; };
-layout(binding = 9, scalar) buffer CountersBlock { Counters counters; };
-layout(binding = 10, scalar) buffer ListsBlock { Lists lists[]; };
-layout(binding = 11, scalar) buffer Rounds { Round rounds[]; };
-#include "lists.glsl"
+readonly BUFFER(frame);
+readonly BUFFER(views);
+readonly BUFFER(fits);
+TEXTURE(position_world);
+TEXTURE(normal_world);
+readonly BUFFER(kernels);
+writeonly BUFFER(packets);
+writeonly BUFFER(pixels);
+readonly BUFFER(costs);
+BUFFER(counters);
+#include "rounds.glsl"
+#include "list_append.glsl"
 
 // T_d of [Yang09 §4.3].
 const float DIVERGENCE_MAX = 0.8;

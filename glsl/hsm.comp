@@ -7,10 +7,10 @@
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 2) uniform texture2D shadow_map;
-layout(binding = 3, rg32f) uniform image2DArray hsm;
+readonly BUFFER(views);
+readonly BUFFER(fits);
+TEXTURE(shadow_map);
+IMAGE(hsm, rg32f);
 
 vec2 below(ivec2 node, int level, uint map_size) {
     if (any(greaterThanEqual(node, ivec2(level > 0 ? hsm_side(level, map_size) : int(map_size))))) return vec2(0.0);

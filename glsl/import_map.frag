@@ -3,8 +3,8 @@
 // A host's shadow map as this engine's: reverse-Z without a far plane, d = near / z.
 #include "pass.glsl"
 
-layout(binding = 0, scalar) readonly buffer Givens { Given givens[]; };
-layout(binding = 1) uniform texture2D host_map;
+readonly BUFFER(givens);
+TEXTURE(host_map);
 
 void main() {
     Given given = givens[push.index];

@@ -5,4 +5,4 @@
 
 vec2 stored(vec2 bounds) { return bounds; }
 
-#include "mssm_level.glsl"
+#include "mssm_build.glsl"

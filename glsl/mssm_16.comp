@@ -15,4 +15,4 @@ vec2 stored(vec2 bounds) {
     return vec2(lower, bounds.y > 0.0 ? max(above, SMALLEST) : 0.0);
 }
 
-#include "mssm_level.glsl"
+#include "mssm_build.glsl"

@@ -6,9 +6,9 @@
 
 layout(local_size_x = 1) in;
 
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 2, scalar) writeonly buffer Projections { Projection projections[]; };
+readonly BUFFER(views);
+readonly BUFFER(fits);
+writeonly BUFFER(projections);
 
 void main() {
     View view = views[push.index];

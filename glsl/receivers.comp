@@ -1,20 +1,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
 // Bounds of the visible receivers that a view has to look at (algorithm.md §10): their box in the
 // face's frame, and the slopes of the four planes that enclose every line from them to the sub-light.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "caster_region.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
+readonly BUFFER(frame);
+readonly BUFFER(views);
+BUFFER(fits);
+TEXTURE(position_world);
+TEXTURE(normal_world);
 
 // Upper bounds of one invocation's receivers; see `Fit`.
 struct Reach {

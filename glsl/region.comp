@@ -4,14 +4,14 @@
 // region of the lines from the sub-light to the visible receivers (algorithm.md §10). One invocation.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "caster_region.glsl"
 
 layout(local_size_x = 1) in;
 
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 2, scalar) readonly buffer Givens { Given givens[]; };
+readonly BUFFER(views);
+BUFFER(fits);
+readonly BUFFER(givens);
 
 void main() {
     Fit fit = fits[push.index];

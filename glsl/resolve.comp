@@ -3,16 +3,16 @@
 // A light's visibility from what its views found occluded: 0 umbra … 1 lit; 0 where the surface faces
 // away from the whole light or lies behind it; NaN where there is no surface.
 #include "pass.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Lights { Light lights[]; };
-layout(binding = 2) uniform texture2D position_world;
-layout(binding = 3) uniform texture2D normal_world;
-layout(binding = 4, scalar) readonly buffer Occlusion { float occlusion[]; };
-layout(binding = 5, scalar) writeonly buffer Visibility { float visibility[]; };
+readonly BUFFER(frame);
+readonly BUFFER(lights);
+TEXTURE(position_world);
+TEXTURE(normal_world);
+readonly BUFFER(occlusion);
+writeonly BUFFER(visibility);
 
 // Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding.
 bool faces_light(Light light, vec3 position, vec3 normal) {

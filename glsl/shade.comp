@@ -7,14 +7,14 @@
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Lights { Light lights[]; };
-layout(binding = 2, scalar) readonly buffer ExposureBlock { Exposure exposure; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
-layout(binding = 5) uniform texture2D albedo;
-layout(binding = 6, scalar) readonly buffer Visibility { float visibility[]; };
-layout(binding = 7, scalar) writeonly buffer Picture { uint picture[]; };
+readonly BUFFER(frame);
+readonly BUFFER(lights);
+readonly BUFFER(exposure);
+TEXTURE(position_world);
+TEXTURE(normal_world);
+TEXTURE(albedo);
+readonly BUFFER(visibility);
+writeonly BUFFER(picture);
 
 vec3 encoded(vec3 color) {
     // Extended Reinhard [Reinhard 2002, eq. 4] on the brightest channel, white at 4: hues are kept.

@@ -140,6 +140,6 @@ const CLASSIFY: Stage = Stage {
 /// The MSSM walked pixel by pixel [Yang09 §4.2].
 const PIXELS: Stage = Stage {
     name: "pixel_visibility",
-    shader: "packet_visibility.comp",
+    shader: "pixel_visibility.comp",
     work: Work::PixelList,
 };

@@ -5,8 +5,8 @@
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0) uniform texture2D shadow_map;
-layout(binding = 1, BOUNDS_FORMAT) uniform image2DArray mssm;
+TEXTURE(shadow_map);
+IMAGE(mssm, BOUNDS_FORMAT);
 
 vec2 below(ivec2 cell, int size) {
     if (any(greaterThanEqual(cell, ivec2(size)))) return vec2(0.0);
