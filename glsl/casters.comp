@@ -36,10 +36,10 @@ vec3 receiver_corner(Fit fit, float side) {
 // and beyond rounding, which grows with each point's own coordinates, so that far receivers do not blur near ones.
 float reach_beyond(Box box, vec3 normal, vec3 at, float rounding) {
     vec3 middle = clamp(vec3(0.0), box.lower, box.upper);
-    vec3 beyond = max(normal * (box.lower - at) - rounding * abs(box.lower),
-                      normal * (box.upper - at) - rounding * abs(box.upper));
-    beyond = max(beyond, normal * (middle - at) - rounding * abs(middle));
-    return beyond.x + beyond.y + beyond.z;
+    vec3 reach = max(normal * (box.lower - at) - rounding * abs(box.lower),
+                     normal * (box.upper - at) - rounding * abs(box.upper));
+    reach = max(reach, normal * (middle - at) - rounding * abs(middle));
+    return reach.x + reach.y + reach.z;
 }
 
 // Whether the light or a receiver is on the side of the triangle's plane that `normal` points to, beyond rounding. Corners
@@ -119,8 +119,7 @@ void main() {
     View view = views[push.index];
     Box light = box_of_light(view);
     Box receivers = Box(receiver_corner(fit, -1.0), receiver_corner(fit, 1.0));
-    vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
-                       value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    vec4 slopes = slopes_of(fit);
     float depth_max = max(receivers.upper.z, light.upper.z);
     Reach reach = Reach(vec4(NONE), NONE);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;

@@ -14,11 +14,11 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(position_world);
-TEXTURE(normal_world);
 writeonly BUFFER(kernels);
 BUFFER(counters);
 TEXTURE(shadow_map);
+
+#include "surface.glsl"
 
 // Queries that shrink a kernel; the gain of a fifth is below a texel in all scenes seen.
 const int REFINEMENTS = 4;
@@ -74,16 +74,15 @@ void count(uint status) {
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = pixel.y * frame.size.x + pixel.x;
+    uint index = index_of(pixel);
     View view = views[push.index];
     Fit fit = fits[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    vec3 to_point = position.xyz - view.center;
+    SurfacePoint point = surface_at(pixel);
+    vec3 to_point = point.position - view.center;
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (position.w > 0.0 && in_view(view, to_point, normal)) {
+    if (point.exists && in_view(view, to_point, point.normal)) {
         kernel.status = KERNEL_LIT;
-        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, normal));
+        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal));
     }
     kernels[index] = kernel;
     bool umbra = kernel.status == KERNEL_UMBRA;

@@ -21,17 +21,17 @@ layout(constant_id = 2) const bool REPROCESS = false;  // what a packet's pixels
 readonly BUFFER(frame);
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(position_world);
-TEXTURE(normal_world);
 readonly BUFFER(kernels);
 BUFFER(packets);
 BUFFER(pixels);
 
+#include "surface.glsl"
+#include "packet_grid.glsl"
 #include "list_append.glsl"
 #include "packet_pixels.glsl"
 
 // [invocation] That share a packet.
-const uint PACKET_LANES = LANES ? PACKET_WIDTH * PACKET_HEIGHT : 1u;
+const uint PACKET_LANES = LANES ? PIXELS_PER_PACKET : 1u;
 
 // [edge] Edges are integrated in batches, so that what is kept of a pixel is fetched once for all of a batch.
 const uint BATCH = 4u;
@@ -126,10 +126,10 @@ void conclude(View view, uint slot) {
 }
 
 // Whether `lane` is the first of a packet's that has a pixel to integrate, and counts for all.
-bool is_leader(Packet packet, uint lane) {
+bool is_leader(uvec2 place, uint lane) {
     bool first = true;
     uint index;
-    for (uint i = 0u; i < lane; ++i) first = first && !is_penumbra(packet, i, index);
+    for (uint i = 0u; i < lane; ++i) first = first && !is_penumbra(place, i, index);
     return first;
 }
 
@@ -138,17 +138,18 @@ void main() {
     uint lane = gl_LocalInvocationID.x % PACKET_LANES;
     uint at = gl_LocalInvocationID.x / PACKET_LANES;
     uint entry = group * packets_per_group() + at;
-    // Lanes may be out of budget at different places.
-    uint place = entry * PACKET_LANES + lane;
-    if (at >= packets_per_group() || entry >= lists[push.index].packet_count || is_finished(place)) return;
+    // Lanes may be out of budget at different nodes.
+    uint at_progress = entry * PACKET_LANES + lane;
+    if (at >= packets_per_group() || entry >= lists[push.index].packet_count || is_finished(at_progress)) return;
     View view = views[push.index];
     Fit fit = fits[push.index];
     Packet packet = packets[entry];
-    if (!keep_pixels(view, fit, packet, lane)) return;
+    uvec2 place = uvec2(packet.index % packet_grid().x, packet.index / packet_grid().x);
+    if (!keep_pixels(view, fit, place, lane)) return;
 
     int top = top_level(packet, fit.level_count);
     Walk walk = walk_from(unpacked(packet.first), top);
-    if (!is_first_round()) walk = resumed_walk(progress[place], top);
+    if (!is_first_round()) walk = resumed_walk(progress[at_progress], top);
     Cursor cursor = cursor_at(walk);
     visit_kernel(view, packet, cursor);
 
@@ -164,8 +165,8 @@ void main() {
     if (suspended) reach_packets(push.level + 1u, group);
     Progress next = ENDED;
     if (suspended) next = progress_of(cursor.walk);
-    keep_progress(place, next);
-    if (COUNT && (!LANES || is_leader(packet, lane))) {
+    keep_progress(at_progress, next);
+    if (COUNT && (!LANES || is_leader(place, lane))) {
         count_work();
         if (!suspended && !complete) atomicAdd(counters.reprocessed_packets, 1u);
     }

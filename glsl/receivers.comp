@@ -12,8 +12,8 @@ layout(local_size_x = GROUP_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(views);
 BUFFER(fits);
-TEXTURE(position_world);
-TEXTURE(normal_world);
+
+#include "surface.glsl"
 
 // Upper bounds of one invocation's receivers; see `Fit`.
 struct Reach {
@@ -40,11 +40,9 @@ void main() {
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
     uint pixels = frame.size.x * frame.size.y;
     for (uint index = gl_GlobalInvocationID.x; index < pixels; index += stride) {
-        ivec2 pixel = ivec2(index % frame.size.x, index / frame.size.x);
-        vec4 position = texelFetch(position_world, pixel, 0);
-        vec3 normal = texelFetch(normal_world, pixel, 0).xyz;
-        vec3 to_point = position.xyz - view.center;
-        if (position.w > 0.0 && in_view(view, to_point, normal)) include(reach, view, light, to_point);
+        SurfacePoint point = surface_at(pixel_at(index));
+        vec3 to_point = point.position - view.center;
+        if (point.exists && in_view(view, to_point, point.normal)) include(reach, view, light, to_point);
     }
     uint count = subgroupAdd(reach.count);
     vec3 upper = subgroupMax(reach.upper);

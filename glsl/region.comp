@@ -18,8 +18,7 @@ void main() {
     if (fit.receiver_count == 0u) return;
     View view = views[push.index];
     Box light = box_of_light(view);
-    vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
-                       value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    vec4 slopes = slopes_of(fit);
     float far = max(value_of(fit.receiver_bounds[2], 0.0), light.upper.z);
     float near = min(givens[push.index].near, far);
     // Along a plane the tangent changes one way: its largest value is at one of the ends.

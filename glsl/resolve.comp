@@ -9,10 +9,10 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(frame);
 readonly BUFFER(lights);
-TEXTURE(position_world);
-TEXTURE(normal_world);
 readonly BUFFER(occlusion);
 writeonly BUFFER(visibility);
+
+#include "surface.glsl"
 
 // Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding.
 bool faces_light(Light light, vec3 position, vec3 normal) {
@@ -30,13 +30,12 @@ void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
     Light light = lights[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    uint index = pixel.y * frame.size.x + pixel.x;
+    SurfacePoint point = surface_at(pixel);
+    uint index = index_of(pixel);
     float result = uintBitsToFloat(0x7fc00000u);
-    if (position.w > 0.0) {
+    if (point.exists) {
         result = 0.0;
-        if (faces_light(light, position.xyz, normal))
+        if (faces_light(light, point.position, point.normal))
             result = light.view_count == 0u ? 1.0 : clamp(1.0 - occlusion[index] / light.weight_sum, 0.0, 1.0);
     }
     visibility[push.index * frame.size.x * frame.size.y + index] = result;

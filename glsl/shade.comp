@@ -10,11 +10,11 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(lights);
 readonly BUFFER(exposure);
-TEXTURE(position_world);
-TEXTURE(normal_world);
 TEXTURE(albedo);
 readonly BUFFER(visibility);
 writeonly BUFFER(picture);
+
+#include "surface.glsl"
 
 vec3 encoded(vec3 color) {
     // Extended Reinhard [Reinhard 2002, eq. 4] on the brightest channel, white at 4: hues are kept.
@@ -27,16 +27,15 @@ vec3 encoded(vec3 color) {
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = pixel.y * frame.size.x + pixel.x;
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
+    uint index = index_of(pixel);
+    SurfacePoint point = surface_at(pixel);
     vec3 color = vec3(0.0);
-    if (position.w > 0.0) {
+    if (point.exists) {
         vec3 light_sum = vec3(exposure.ambient);
         for (uint i = 0u; i < exposure.light_count; ++i) {
             float seen = visibility[i * frame.size.x * frame.size.y + index];
             if (!(seen > 0.0)) continue;
-            light_sum += seen * irradiance(lights[i], position.xyz, normal) / PI * lights[i].intensity;
+            light_sum += seen * irradiance(lights[i], point.position, point.normal) / PI * lights[i].intensity;
         }
         color = texelFetch(albedo, ivec2(pixel), 0).rgb * light_sum * exposure.scale;
     }

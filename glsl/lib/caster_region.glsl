@@ -29,6 +29,12 @@ vec4 slopes_to(Box light, vec3 receiver) {
     return light.upper.z > light.lower.z ? max(slope, vec4(0.0)) : slope;
 }
 
+// The widest of all receivers'.
+vec4 slopes_of(Fit fit) {
+    return vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
+                value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+}
+
 const uint PLANE_COUNT = 11u;
 
 // By how much the region is opened, relative to the coordinates' magnitude: a point of the light and a

@@ -10,9 +10,9 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(position_world);
-TEXTURE(normal_world);
 TEXTURE(shadow_map);
+
+#include "surface.glsl"
 
 // [0, 1] Share of the sub-light that the technique holds for hidden.
 float hidden_share(View view, Fit fit, uvec2 pixel, Receiver receiver);
@@ -32,15 +32,14 @@ void main() {
     if (any(greaterThanEqual(pixel, frame.size))) return;
     View view = views[push.index];
     Fit fit = fits[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    vec3 to_point = position.xyz - view.center;
-    bool looked_at = position.w > 0.0 && in_view(view, to_point, normal) && fit.level_count > 0u;
+    SurfacePoint point = surface_at(pixel);
+    vec3 to_point = point.position - view.center;
+    bool looked_at = point.exists && in_view(view, to_point, point.normal) && fit.level_count > 0u;
     float occluded = 0.0;
     // A loop, since some drivers execute both sides of an `if`: of the pixels of a side face most are another face's.
     [[dont_unroll]] for (uint once = 0u; once < uint(looked_at); ++once)
-        occluded = view.weight * hidden_share(view, fit, pixel, project(view, fit, to_point, normal));
-    if (!ACCUMULATE || looked_at) add_occluded(pixel.y * frame.size.x + pixel.x, occluded);
+        occluded = view.weight * hidden_share(view, fit, pixel, project(view, fit, to_point, point.normal));
+    if (!ACCUMULATE || looked_at) add_occluded(index_of(pixel), occluded);
     if (COUNT && looked_at) {
         samples_read = samples_read_by_pixel();
         atomicAdd(counters.pixels, 1u);

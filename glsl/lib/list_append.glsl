@@ -1,13 +1,13 @@
 // Appends to the lists of packets and pixels; a list's length and the dispatches that work it off grow together. Needs the
-// buffers `packets` and `pixels`.
+// buffers `packets` and `pixels`, rounds.glsl and packet_grid.glsl.
 
 BUFFER(lists);
 
 // A packet of one pixel is a pixel.
-const bool PIXELWISE = PACKET_WIDTH * PACKET_HEIGHT == 1u;
+const bool PIXELWISE = PIXELS_PER_PACKET == 1u;
 
 // [packet] Packets that a work group works off.
-uint packets_per_group() { return LANES && !PIXELWISE ? GROUP_SIZE / (PACKET_WIDTH * PACKET_HEIGHT) : GROUP_SIZE; }
+uint packets_per_group() { return LANES && !PIXELWISE ? GROUP_SIZE / PIXELS_PER_PACKET : GROUP_SIZE; }
 
 // The first entry of a group makes the dispatch reach all of it.
 void append_packet(Packet packet) {

@@ -1,6 +1,7 @@
 // The penumbra pixels of a packet that an invocation integrates: all of them, or a single one where LANES is set. What is
 // kept of a receiver is kept field by field: those that a map parallel to the light does not need cost nothing. Packets have
-// no receivers with the sub-light's centre behind their plane. Needs receiver.glsl and the pass's resources.
+// no receivers with the sub-light's centre behind their plane. Needs receiver.glsl, surface.glsl,
+// packet_grid.glsl and resume.glsl.
 
 layout(constant_id = 10) const uint SLOTS = 1u;  // [pixel] integrated by one invocation
 
@@ -21,20 +22,9 @@ float sum[SLOTS];
 // Back-projection scale of a map that is parallel to the light, which all receivers share.
 vec2 kappa;
 
-// Whether pixel `i` of the packet is to be integrated, and its index.
-bool is_penumbra(Packet packet, uint i, out uint index) {
-    uint columns = (frame.size.x + PACKET_WIDTH - 1u) / PACKET_WIDTH;
-    uvec2 pixel = uvec2(packet.index % columns, packet.index / columns) * uvec2(PACKET_WIDTH, PACKET_HEIGHT)
-                + uvec2(i % PACKET_WIDTH, i / PACKET_WIDTH);
-    index = pixel.y * frame.size.x + pixel.x;
-    return all(lessThan(pixel, frame.size)) && kernels[index].status == KERNEL_PENUMBRA;
-}
-
 void keep_pixel(View view, Fit fit, uint slot, uint index) {
-    ivec2 pixel = ivec2(index % frame.size.x, index / frame.size.x);
-    vec3 to_point = texelFetch(position_world, pixel, 0).xyz - view.center;
-    vec3 normal = texelFetch(normal_world, pixel, 0).xyz;
-    Receiver receiver = project(view, fit, to_point, normal);
+    SurfacePoint point = surface_at(pixel_at(index));
+    Receiver receiver = project(view, fit, point.position - view.center, point.normal);
     is_kept[slot] = true;
     slot_end = slot + 1u;
     pixel_index[slot] = index;
@@ -48,19 +38,19 @@ void keep_pixel(View view, Fit fit, uint slot, uint index) {
     sum[slot] = is_first_round() ? 0.0 : partial[index];
 }
 
-// Keeps what `lane` has to integrate of the packet. False: that is nothing.
-bool keep_pixels(View view, Fit fit, Packet packet, uint lane) {
+// Keeps what `lane` has to integrate of the packet at a place of the grid. False: that is nothing.
+bool keep_pixels(View view, Fit fit, uvec2 place, uint lane) {
     kappa = fit.near / (fit.focal * view.half_size);
     uint index;
     if (LANES) {
-        bool wanted = is_penumbra(packet, lane, index);
+        bool wanted = is_penumbra(place, lane, index);
         if (wanted) keep_pixel(view, fit, 0u, index);
         return wanted;
     }
     // Unrolled, it would be most of what drivers compile.
     [[dont_unroll]] for (uint i = 0u; i < SLOTS; ++i) {
         is_kept[i] = false;
-        if (is_penumbra(packet, i, index)) keep_pixel(view, fit, i, index);
+        if (is_penumbra(place, i, index)) keep_pixel(view, fit, i, index);
     }
     return true;
 }

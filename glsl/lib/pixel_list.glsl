@@ -14,11 +14,11 @@ layout(local_size_x = GROUP_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(views);
 BUFFER(fits);
-TEXTURE(position_world);
-TEXTURE(normal_world);
 readonly BUFFER(kernels);
 readonly BUFFER(lists);
 readonly BUFFER(pixels);
+
+#include "surface.glsl"
 
 // The pixel that this invocation works on.
 struct ListedPixel {
@@ -47,10 +47,8 @@ float hidden_share();
 
 ListedPixel listed_pixel(uint index) {
     View view = views[push.index];
-    ivec2 at = ivec2(index % frame.size.x, index / frame.size.x);
-    vec3 to_point = texelFetch(position_world, at, 0).xyz - view.center;
-    vec3 normal = texelFetch(normal_world, at, 0).xyz;
-    Receiver receiver = project(view, fits[push.index], to_point, normal);
+    SurfacePoint point = surface_at(pixel_at(index));
+    Receiver receiver = project(view, fits[push.index], point.position - view.center, point.normal);
     return ListedPixel(index, view, receiver, unpacked(kernels[index].first), unpacked(kernels[index].last));
 }
 
