@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Leaves out the triangles that shadow no visible receiver of this view, appends the others to the
-// index list of its shadow map and reduces their bounds (algorithm.md §10). A triangle casts no
-// shadow when sub-light and receivers lie on one closed side of its plane, or when it lies outside the
-// region of the lines between them.
+// Leaves out the triangles that shadow no visible receiver of this view, appends the others to the index list of its shadow
+// map and reduces their bounds (algorithm.md §10). A triangle casts no shadow when sub-light and receivers lie on one closed
+// side of its plane, or when it lies outside the region of the lines between them. No caster is left out, whatever rounding
+// does; the bounds hold all that is kept of triangles inside the region.
 #include "pass.glsl"
 #include "bounds.glsl"
 #include "receiver.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Coherent packets go to the packet list, the pixels of the others to the pixel list
-// [Yang09 §4.3, eq. 4–6].
+// Which packets are coherent: they go to the packet list, the pixels of the others to the pixel list [Yang09 §4.3, eq. 4–6].
+// Every penumbra pixel comes to one of the lists; which one decides on run time only.
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "kernel.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Fits a view's projection to its casters and writes the work that is left for its passes
-// (algorithm.md §10). One invocation.
+// Fits a view's projection to the bounds of its casters and writes the work that is left for its passes: levels, groups,
+// draws (algorithm.md §10). No contour touches the map's border. One invocation.
 #include "pass.glsl"
 #include "bounds.glsl"
 #include "quadtree.glsl"

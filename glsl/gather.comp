@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One instance of a host's mesh, moved to its place and appended to the casters' triangles.
+// One instance of a host's mesh, moved to its place and appended to the casters' triangles. Whatever the host's indices are,
+// nothing is read or written outside of the mesh.
 #include "pass.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;

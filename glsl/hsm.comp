@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One level of the hierarchical shadow map [DU07]: level 1 from 2×2 texels of the shadow map, every other level
-// from 2×2 nodes of the one below. What lies beyond the map is empty.
+// from 2×2 nodes of the one below. What lies beyond the map is empty. Bounds are exact.
 #include "pass.glsl"
 #include "hsm.glsl"
 

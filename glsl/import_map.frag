@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A host's shadow map as this engine's: reverse-Z without a far plane, d = near / z.
+// A host's shadow map as this engine's: reverse-Z without a far plane, d = near / z (algorithm.md §1), empty where the host
+// says so. The host's perspective may be any from the sub-light's centre.
 #include "pass.glsl"
 
 readonly BUFFER(givens);

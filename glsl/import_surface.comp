@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The visible surface from a host's images: positions, or depths with the host's projection, and normals.
+// The visible surface from a host's images: positions, or depths with the host's projection, and normals. Normals come out
+// with length 1; what has no position or no normal is no surface.
 #include "pass.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A kernel for each pixel, shrunk by repeated MSSM queries, and the pixels that need no integration
-// [Yang09 alg. 1, step 5].
+// A kernel for each pixel, shrunk by repeated MSSM queries, and the pixels that need no integration [SS07; Yang09 alg. 1,
+// step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds every cell that adds to the pixel's
+// integral.
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "quadtree.glsl"

@@ -2,36 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 // Visibility of coherent packets of w×h pixels [Yang09 §4.1, alg. 1, step 7]: each edge of the contour in the packet's
 // extended kernel is extracted once (alg. 3, hierarchical_contour.glsl) and integrated for each of its pixels (alg. 2,
-// `visit_kernel` below). Where the pixels see different contours, each gets its own edges, or all of the packet goes to the
+// `sum_kernel` below). Where the pixels see different contours, each gets its own edges, or all of the packet goes to the
 // pixel list; so the image is that of pixel_visibility.comp.
 #include "pass.glsl"
-#include "receiver.glsl"
-#include "kernel.glsl"
-#include "contour.glsl"
-#include "map.glsl"
-#include "resume.glsl"
-#include "occlusion.glsl"
-#include "count.glsl"
-#include "radial.glsl"
+#include "packet_list.glsl"
 #include "hierarchical_contour.glsl"
 
-layout(local_size_x = GROUP_SIZE) in;
 layout(constant_id = 2) const bool REPROCESS = false;  // what a packet's pixels disagree about sends them to the pixel list
-
-readonly BUFFER(frame);
-readonly BUFFER(views);
-readonly BUFFER(fits);
-readonly BUFFER(kernels);
-BUFFER(packets);
-BUFFER(pixels);
-
-#include "surface.glsl"
-#include "packet_grid.glsl"
-#include "list_append.glsl"
-#include "packet_pixels.glsl"
-
-// [invocation] That share a packet.
-const uint PACKET_LANES = LANES ? PIXELS_PER_PACKET : 1u;
 
 // [edge] Edges are integrated in batches, so that what is kept of a pixel is fetched once for all of a batch.
 const uint BATCH = 4u;
@@ -107,67 +84,17 @@ void integrate_apart(View view, Cursor cursor) {
     spend_nested(cursor.agreed ? 0u : 2u, SLOTS);
 }
 
-// The kernel's edges, each for every pixel [Yang09 alg. 2]. The loops are nested so that invocations side by side walk
-// together and integrate together. Ends early where the pixels disagree and are to be reprocessed (`cursor.agreed`).
-void visit_kernel(View view, Packet packet, inout Cursor cursor) {
+// For each edge of the kernel's contour, for each pixel [Yang09 alg. 2]. The loops are nested so that invocations side by side
+// walk together and integrate together.
+Progress sum_kernel(View view, Packet packet, Progress from, out bool agreed) {
     Edge batch[BATCH];
     [[unroll]] for (uint i = 0u; i < BATCH; ++i) batch[i] = Edge(vec3(0.0), vec3(0.0));
+    Cursor cursor = cursor_at(walk_over(packet, fits[push.index].level_count, from));
     REPEAT_WHILE_PENDING(cursor.more, !at_end(cursor) && (cursor.agreed || !REPROCESS)) {
         uint count = extract_edges(view, packet, cursor, batch);
         integrate(view, batch, count);
         if (!REPROCESS) integrate_apart(view, cursor);
     }
-}
-
-// What a pixel's sum over all edges says.
-void conclude(View view, uint slot) {
-    float hidden = sum[slot] + centre_area(view, receiver_of(slot), 0u);
-    add_occluded(pixel_index[slot], view.weight * clamp(hidden / view.area, 0.0, 1.0));
-}
-
-// Whether `lane` is the first of a packet's that has a pixel to integrate, and counts for all.
-bool is_leader(uvec2 place, uint lane) {
-    bool first = true;
-    uint index;
-    for (uint i = 0u; i < lane; ++i) first = first && !is_penumbra(place, i, index);
-    return first;
-}
-
-void main() {
-    uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
-    uint lane = gl_LocalInvocationID.x % PACKET_LANES;
-    uint at = gl_LocalInvocationID.x / PACKET_LANES;
-    uint entry = group * packets_per_group() + at;
-    // Lanes may be out of budget at different nodes.
-    uint at_progress = entry * PACKET_LANES + lane;
-    if (at >= packets_per_group() || entry >= lists[push.index].packet_count || is_finished(at_progress)) return;
-    View view = views[push.index];
-    Fit fit = fits[push.index];
-    Packet packet = packets[entry];
-    uvec2 place = uvec2(packet.index % packet_grid().x, packet.index / packet_grid().x);
-    if (!keep_pixels(view, fit, place, lane)) return;
-
-    int top = top_level(packet, fit.level_count);
-    Walk walk = walk_from(unpacked(packet.first), top);
-    if (!is_first_round()) walk = resumed_walk(progress[at_progress], top);
-    Cursor cursor = cursor_at(walk);
-    visit_kernel(view, packet, cursor);
-
-    bool agreed = cursor.agreed || !REPROCESS;
-    bool complete = agreed && cursor.walk.ended;
-    bool suspended = agreed && !complete && !is_last_round();
-    for (uint i = 0u; i < slot_end; ++i) {
-        if (!is_kept[i]) continue;
-        if (suspended) partial[pixel_index[i]] = sum[i];
-        else if (complete) conclude(view, i);
-        else append_pixel(pixel_index[i]);
-    }
-    if (suspended) reach_packets(push.level + 1u, group);
-    Progress next = ENDED;
-    if (suspended) next = progress_of(cursor.walk);
-    keep_progress(at_progress, next);
-    if (COUNT && (!LANES || is_leader(place, lane))) {
-        count_work();
-        if (!suspended && !complete) atomicAdd(counters.reprocessed_packets, 1u);
-    }
+    agreed = cursor.agreed || !REPROCESS;
+    return progress_of(cursor.walk);
 }

@@ -45,10 +45,7 @@ uint mask_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
 
 Progress sum_kernel(Progress from) {
     Packet packet = packet_of_pixel();
-    int top = top_level(packet, fits[push.index].level_count);
-    Walk walk = walk_from(pixel.first, top);
-    if (!is_first_round()) walk = resumed_walk(from, top);
-    Cursor cursor = cursor_at(walk);
+    Cursor cursor = cursor_at(walk_over(packet, fits[push.index].level_count, from));
     REPEAT_WHILE_PENDING(cursor.more, !at_end(cursor)) {
         bool found = next_edge(pixel.view, packet, cursor);
         float area = edge_beyond(pixel.view, pixel.receiver, edge_at(cursor));

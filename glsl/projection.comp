@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // A view's projection as a matrix, for hosts that draw its casters with pipelines of their own: what shadow_map.vert
-// computes. One invocation.
+// computes (algorithm.md §1). One invocation.
 #include "pass.glsl"
 
 layout(local_size_x = 1) in;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounds of the visible receivers that a view has to look at (algorithm.md §10): their box in the
-// face's frame, and the slopes of the four planes that enclose every line from them to the sub-light.
+// Bounds of the visible receivers that a view has to look at (algorithm.md §10): their box in the face's frame, and the
+// slopes of the four planes that enclose every line from them to the sub-light. The order of reduction does not matter.
 #include "pass.glsl"
 #include "bounds.glsl"
 #include "receiver.glsl"

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounds of casters that the host draws itself and that nothing is known of but how near they may be: the whole
-// region of the lines from the sub-light to the visible receivers (algorithm.md §10). One invocation.
+// Bounds of casters that the host draws itself and that nothing is known of but how near they may be: the whole region of
+// the lines from the sub-light to the visible receivers, which no visible shadow's caster is outside of (algorithm.md §10).
+// One invocation.
 #include "pass.glsl"
 #include "bounds.glsl"
 #include "receiver.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The picture: each light's unshadowed irradiance times its visibility, on a diffuse surface, tone-mapped and
-// sRGB-encoded.
+// The picture: each light's unshadowed irradiance times its visibility, on a diffuse surface, tone-mapped [Reinhard 2002,
+// eq. 4] and sRGB-encoded.
 #include "pass.glsl"
 #include "irradiance.glsl"
 
@@ -17,7 +17,7 @@ writeonly BUFFER(picture);
 #include "surface.glsl"
 
 vec3 encoded(vec3 color) {
-    // Extended Reinhard [Reinhard 2002, eq. 4] on the brightest channel, white at 4: hues are kept.
+    // Extended Reinhard on the brightest channel, white at 4: hues are kept.
     float peak = max(max(color.r, color.g), max(color.b, 1e-6));
     color *= (1.0 + peak / 16.0) / (1.0 + peak);
     color = clamp(color, 0.0, 1.0);

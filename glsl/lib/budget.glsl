@@ -20,7 +20,8 @@ void settle() {
 // Pays for a loop of `outer` turns, each of which has a loop of `inner` turns. Both may differ from lane to lane.
 void spend_nested(uint outer, uint inner) { unpaid_turns += subgroupMax(outer) * (subgroupMax(inner) + 1u) + 1u; }
 
-// `while (condition)` without further loops in it.
+// `while (condition)` without further loops in it. A search ends at what it has found and leaves it to the loop around it to
+// go on: lavapipe loses what a lane stores in a loop that other lanes have not left yet.
 #define SEARCH_WHILE(condition) for (++unpaid_turns; (condition) && budget_lasts(); ++unpaid_turns)
 
 // `while (condition)` around searches.

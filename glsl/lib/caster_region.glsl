@@ -1,5 +1,6 @@
 // The region that holds every point of every line from the sub-light to a visible receiver, in the
-// frame of the view's face (algorithm.md §10). What lies outside casts no visible shadow.
+// frame of the view's face (algorithm.md §10). What lies outside casts no visible shadow. Needs bounds.glsl and
+// receiver.glsl.
 
 struct Box {
     vec3 lower;

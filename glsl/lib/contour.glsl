@@ -1,5 +1,6 @@
-// Contours of occluders by marching squares on the dual grid [GBP07; algorithm.md §2]. Needs receiver.glsl. Corners of a cell count counter-clockwise from
-// (0, 0): 0 (0, 0), 1 (1, 0), 2 (1, 1), 3 (0, 1). Edge e runs from corner e to corner e + 1.
+// Contours of occluders by marching squares on the dual grid [GBP07; algorithm.md §2]. Corners of a cell count
+// counter-clockwise from (0, 0): 0 (0, 0), 1 (1, 0), 2 (1, 1), 3 (0, 1). Edge e runs from corner e to corner e + 1. Needs
+// receiver.glsl.
 
 // Per mask of occluding corners (bit = corner): number of segments, then start and end edge of each, two
 // bits apiece. A segment has the occluders on its left; the two saddles keep them apart.

@@ -1,7 +1,7 @@
 // Hierarchical extraction of a packet's contour [Yang09 §4.2, alg. 3]: the MSSM is walked from the nodes that cover the
 // packet's kernel; a node is passed by where no sample can be an occluder to one of the packet's pixels and none to another
-// (fig. 6, cases 4 and 5). It finds the edges that a scan of the kernel finds, in an order of its own. Needs budget.glsl,
-// count.glsl, receiver.glsl, kernel.glsl, contour.glsl and map.glsl.
+// (fig. 6, cases 4 and 5). It finds the edges that a scan of the kernel finds, in an order of its own. Needs what
+// pixel_list.glsl and packet_list.glsl include.
 //
 // DEVIATION [Yang09 §4.2]: a large kernel starts from up to 4×4 roots instead of one (`ROOT_LEVELS`).
 // DEVIATION [Yang09 eq. 3]: instead of with a range of depths, samples are compared with bounds of the packet's limits there
@@ -47,10 +47,15 @@ bool misses_light(View view, Packet packet, vec2 kappa, ivec2 node, int side, fl
         || any(lessThan(vec2(node + side), packet.centers.xy + reach * view.extent.xy));
 }
 
-// The lowest level whose node at the kernel's corner covers the kernel, as far as levels are built.
-int top_level(Packet packet, uint level_count) {
-    ivec2 side = unpacked(packet.last) - unpacked(packet.first) + 1;
-    return min(level_covering(max(side.x, side.y)), int(level_count) - 1);
+// A walk over the packet's kernel, from nodes of the lowest level that covers it from its corner on, as far as levels are
+// built. Later rounds go on where the one before stood.
+Walk walk_over(Packet packet, uint level_count, Progress from) {
+    ivec2 first = unpacked(packet.first);
+    ivec2 side = unpacked(packet.last) - first + 1;
+    int top = min(level_covering(max(side.x, side.y)), int(level_count) - 1);
+    Walk walk = walk_from(first, top);
+    if (!is_first_round()) walk = resumed_walk(from, top);
+    return walk;
 }
 
 // Walks to the next cell with a contour and past it. False: there is none left.

@@ -1,6 +1,5 @@
-// The dual-grid multi-scale shadow map [SS07, Yang09 §4.2; algorithm.md §4]: level l, texel (i, j) holds the least and the largest depth over
-// the cells [i, i + 2^l) × [j, j + 2^l). What lies beyond the map is empty: depth 0. Needs
-// quadtree.glsl.
+// The dual-grid multi-scale shadow map [SS07, Yang09 §4.2; algorithm.md §4]: level l, texel (i, j) holds the least and the
+// largest depth over the cells [i, i + 2^l) × [j, j + 2^l). What lies beyond the map is empty: depth 0. Needs quadtree.glsl.
 
 TEXTURE(mssm);
 

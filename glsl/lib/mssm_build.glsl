@@ -1,4 +1,4 @@
-// One level of the dual-grid MSSM [Yang09 §4.2]: level 0 from the four samples of each dual cell, every
+// One level of the dual-grid MSSM [Yang09 §4.2; algorithm.md §4]: level 0 from the four samples of each dual cell, every
 // other level from four texels of the one below, half its side apart. Who includes it says in which format bounds
 // are stored, BOUNDS_FORMAT, and how they get there, `vec2 stored(vec2 bounds)`.
 #include "pass.glsl"

@@ -60,9 +60,7 @@ void main() {
     uint first_word = pixel.index * SUM_WORDS;
     for (uint i = 0u; i < SUM_WORDS; ++i) sum[i] = is_first_round() ? SUM(0) : partial[first_word + i];
 
-    Progress from = Progress(0u, 0u, 0u, 0u);
-    if (!is_first_round()) from = progress[entry];
-    Progress next = sum_kernel(from);
+    Progress next = sum_kernel(resumed(entry));
 
     bool complete = next.next == FINISHED;
     if (complete) {

@@ -18,6 +18,13 @@ const Progress ENDED = Progress(FINISHED, 0u, 0u, 0u);
 // Whether an earlier round has ended the entry whose progress is kept at `place`.
 bool is_finished(uint place) { return !is_first_round() && progress[place].next == FINISHED; }
 
+// Where this round goes on; all 0 in the first.
+Progress resumed(uint place) {
+    Progress from = Progress(0u, 0u, 0u, 0u);
+    if (!is_first_round()) from = progress[place];
+    return from;
+}
+
 // Keeps where the next round goes on; ENDED: nowhere.
 void keep_progress(uint place, Progress next) {
     if (ROUNDS > 1u) progress[place] = next;

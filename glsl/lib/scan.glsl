@@ -1,8 +1,7 @@
 // A scan of a rectangle of cells or texels, row by row, in all layers of the shadow map one after the other: how a technique
 // over the pixel list (pixel_list.glsl) sums up over a kernel that it has no hierarchy for.
 
-// A search stays at what it has found, and whoever has seen to that goes on (`advance`): lavapipe loses what lanes put by in
-// a loop that others have not left yet.
+// A search stays at what it has found, and whoever has seen to that goes on (`advance`).
 struct Scan {
     ivec2 first;
     ivec2 last;

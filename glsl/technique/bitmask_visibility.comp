@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Visibility of the pixel list's pixels from microquads: four neighbouring occluder samples span a quadrangle, whose
-// back-projection sets the bits of the light samples that it hides [SS07 §3]. A sample is hidden once, however many quads
+// back-projection sets the bits of the light samples that it hides [SS07]. A sample is hidden once, however many quads
 // hide it; visibility has as many steps as there are samples.
 #include "pass.glsl"
 

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Visibility of the pixel list's pixels from several peeled layers of the shadow map [BCS08]: the areas that the
-// layers' occluders hide add up, micropatches or contours.
+// layers' occluders hide add up, micropatches or contours. What the first layer hides from the light's centre is not missed;
+// what two layers hide counts twice.
 #include "pass.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"

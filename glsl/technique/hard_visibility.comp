@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Hard shadows: the nearest sample decides, or the mean of the tests of its neighbourhood [Williams78; percentage
-// closer filtering by Reeves, Salesin and Cook 1987].
+// Hard shadows: the nearest sample decides [Williams78], or the mean of the tests of its neighbourhood (percentage-closer
+// filtering by Reeves, Salesin and Cook 1987). Right for a light without extent.
 #include "pass.glsl"
 #include "filtered.glsl"
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Visibility of the pixel list's pixels from the back-projected texels of their kernels, found by a walk through the
-// min-max pyramid that prunes what holds no occluder [DU07]. The patches are those of micropatch_visibility.comp.
+// min-max pyramid that prunes what holds no occluder [DU07]. It finds the patches that micropatch_visibility.comp finds.
 #include "pass.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"

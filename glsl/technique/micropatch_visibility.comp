@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Visibility of the pixel list's pixels from the back-projected texels of their kernels [GBP06 §4]: the patches' areas add up,
+// Visibility of the pixel list's pixels from the back-projected texels of their kernels [GBP06]: the patches' areas add up,
 // with what leaks between them and what they hide twice.
 #include "pass.glsl"
 #include "pixel_list.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Percentage-closer soft shadows [Fernando05]: the mean depth of the blockers found around the pixel's projection
-// tells how wide to filter.
+// tells how wide to filter. In [0, 1], and the same in every frame; the penumbra is a guess.
 #include "pass.glsl"
 #include "filtered.glsl"
 
