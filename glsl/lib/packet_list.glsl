@@ -116,7 +116,8 @@ void main() {
     uint entry = group * packets_per_group() + in_group;
     // Each lane has a progress of its own: they may be out of budget at different nodes.
     uint at = entry * PACKET_LANES + lane;
-    if (in_group >= packets_per_group() || entry >= lists[push.index].packet_count || is_finished(at)) return;
+    if (in_group >= packets_per_group() || entry >= lists[push.index].packet_count) return;
+    if (is_finished(at)) return;
     View view = views[push.index];
     Packet packet = packets[entry];
     uvec2 place = uvec2(packet.index % packet_grid().x, packet.index / packet_grid().x);

@@ -55,7 +55,8 @@ ListedPixel listed_pixel(uint index) {
 void main() {
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint entry = group * GROUP_SIZE + gl_LocalInvocationID.x;
-    if (entry >= lists[push.index].pixel_count || is_finished(entry)) return;
+    if (entry >= lists[push.index].pixel_count) return;
+    if (is_finished(entry)) return;
     pixel = listed_pixel(pixels[entry]);
     uint first_word = pixel.index * SUM_WORDS;
     for (uint i = 0u; i < SUM_WORDS; ++i) sum[i] = is_first_round() ? SUM(0) : partial[first_word + i];
