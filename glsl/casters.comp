@@ -1,25 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-// Leaves out the triangles that shadow no visible receiver of this view, appends the others to the
-// index list of its shadow map and reduces their bounds (algorithm.md §10). A triangle casts no
-// shadow when sub-light and receivers lie on one closed side of its plane, or when it lies outside the
-// region of the lines between them.
+// Leaves out the triangles that shadow no visible receiver of this view, appends the others to the index list of its shadow
+// map and reduces their bounds (algorithm.md §10). A triangle casts no shadow when sub-light and receivers lie on one closed
+// side of its plane, or when it lies outside the region of the lines between them. No caster is left out, whatever rounding
+// does; the bounds hold all that is kept of triangles inside the region.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "caster_region.glsl"
+#include "caster_position.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 3, scalar) readonly buffer Positions { vec3 positions[]; };
-layout(binding = 4, scalar) readonly buffer Triangles { uvec3 triangles[]; };
-layout(binding = 5, scalar) writeonly buffer CasterIndices { uint caster_indices[]; };
-layout(binding = 6, scalar) readonly buffer PositionResiduals { vec3 position_residuals[]; };
-#include "caster_position.glsl"
+readonly BUFFER(frame);
+readonly BUFFER(views);
+BUFFER(fits);
+readonly BUFFER(triangles);
+writeonly BUFFER(caster_indices);
 
 // Upper bounds of one invocation's casters; see `Fit`.
 struct Reach {
@@ -39,10 +36,10 @@ vec3 receiver_corner(Fit fit, float side) {
 // and beyond rounding, which grows with each point's own coordinates, so that far receivers do not blur near ones.
 float reach_beyond(Box box, vec3 normal, vec3 at, float rounding) {
     vec3 middle = clamp(vec3(0.0), box.lower, box.upper);
-    vec3 beyond = max(normal * (box.lower - at) - rounding * abs(box.lower),
-                      normal * (box.upper - at) - rounding * abs(box.upper));
-    beyond = max(beyond, normal * (middle - at) - rounding * abs(middle));
-    return beyond.x + beyond.y + beyond.z;
+    vec3 reach = max(normal * (box.lower - at) - rounding * abs(box.lower),
+                     normal * (box.upper - at) - rounding * abs(box.upper));
+    reach = max(reach, normal * (middle - at) - rounding * abs(middle));
+    return reach.x + reach.y + reach.z;
 }
 
 // Whether the light or a receiver is on the side of the triangle's plane that `normal` points to, beyond rounding. Corners
@@ -122,8 +119,7 @@ void main() {
     View view = views[push.index];
     Box light = box_of_light(view);
     Box receivers = Box(receiver_corner(fit, -1.0), receiver_corner(fit, 1.0));
-    vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
-                       value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    vec4 slopes = slopes_of(fit);
     float depth_max = max(receivers.upper.z, light.upper.z);
     Reach reach = Reach(vec4(NONE), NONE);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;

@@ -3,9 +3,9 @@
 // The visibility as a host's image: the same in all channels, and the background's where there is no surface.
 #include "pass.glsl"
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer HostBlock { Host host; };
-layout(binding = 2, scalar) readonly buffer Visibility { float visibility[]; };
+readonly BUFFER(frame);
+readonly BUFFER(host);
+readonly BUFFER(visibility);
 
 layout(location = 0) out vec4 result;
 

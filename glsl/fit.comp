@@ -1,17 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Fits a view's projection to its casters and writes the work that is left for its passes
-// (algorithm.md §10). One invocation.
+// Fits a view's projection to the bounds of its casters and writes the work that is left for its passes: levels, groups,
+// draws (algorithm.md §10). No contour touches the map's border. One invocation.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "mssm_levels.glsl"
+#include "quadtree.glsl"
 
 layout(local_size_x = 1) in;
+layout(constant_id = 23) const bool GIVEN_MAPS = false;  // a host has the shadow maps already
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 3, scalar) readonly buffer Givens { Given givens[]; };
+readonly BUFFER(frame);
+readonly BUFFER(views);
+BUFFER(fits);
+readonly BUFFER(givens);
 
 // Extent of one axis at most this many times the other's: kernels stay near to square.
 const float ASPECT_MAX = 8.0;
@@ -30,8 +31,8 @@ void main() {
     Fit fit = fits[push.index];
     View view = views[push.index];
     uvec2 tiles = (frame.size + TILE_SIZE - 1u) / TILE_SIZE;
-    bool empty = GIVEN ? fit.receiver_count == 0u : fit.caster_bounds[4] == 0u;
-    if (GIVEN) {
+    bool empty = GIVEN_MAPS ? fit.receiver_count == 0u : fit.caster_bounds[4] == 0u;
+    if (GIVEN_MAPS) {
         fit.near = givens[push.index].near;
         fit.focal = givens[push.index].focal;
         fit.center = givens[push.index].center;

@@ -1,15 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One instance of a host's mesh, moved to its place and appended to the casters' triangles.
+// One instance of a host's mesh, moved to its place and appended to the casters' triangles. Whatever the host's indices are,
+// nothing is read or written outside of the mesh.
 #include "pass.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer Instances { Instance instances[]; };
-layout(binding = 1, scalar) readonly buffer HostVertices { uint host_vertices[]; };
-layout(binding = 2, scalar) readonly buffer HostIndices { uint host_indices[]; };
-layout(binding = 3, scalar) writeonly buffer Positions { vec3 positions[]; };
-layout(binding = 4, scalar) writeonly buffer Triangles { uvec3 triangles[]; };
+readonly BUFFER(instances);
+readonly BUFFER(host_vertices);
+readonly BUFFER(host_indices);
+writeonly BUFFER(positions);
+writeonly BUFFER(triangles);
 
 vec3 position_of(Instance instance, uint vertex) {
     uint word = instance.vertex_word_first + vertex * instance.vertex_words;

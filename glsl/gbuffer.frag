@@ -4,11 +4,9 @@
 // shaded [Yang09 alg. 1, step 1]. A position is where the pixel's ray meets the triangle's plane: interpolating corners would
 // round to the grid of the farthest of them, and a ground of kilometres would tremble under a thing of centimetres.
 #include "pass.glsl"
-
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 5, scalar) readonly buffer Surfaces { Surface surfaces[]; };
-layout(binding = 6, scalar) readonly buffer Texels { uint texels[]; };
 #include "texture.glsl"
+
+readonly BUFFER(frame);
 
 layout(location = 0) flat in vec4 plane;
 layout(location = 1) flat in vec2 z_range;

@@ -3,12 +3,12 @@
 // The g-buffer's vertices, three per triangle, so that what the triangle's pixels share is one value a triangle.
 #include "pass.glsl"
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Positions { vec3 positions[]; };
-layout(binding = 2, scalar) readonly buffer Triangles { uvec3 triangles[]; };
-layout(binding = 3, scalar) readonly buffer TriangleSurfaces { uint triangle_surfaces[]; };
-layout(binding = 4, scalar) readonly buffer Texcoords { vec2 texcoords[]; };
-layout(binding = 7, scalar) readonly buffer TrianglePlanes { vec4 triangle_planes[]; };
+readonly BUFFER(frame);
+readonly BUFFER(positions);
+readonly BUFFER(triangles);
+readonly BUFFER(triangle_surfaces);
+readonly BUFFER(texcoords);
+readonly BUFFER(triangle_planes);
 
 layout(location = 0) flat out vec4 plane;    // unit normal of the front, and its product with any point of the triangle
 layout(location = 1) flat out vec2 z_range;  // [scene units] of the corners along the view axis

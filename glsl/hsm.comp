@@ -1,16 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One level of the hierarchical shadow map [DU07]: level 1 from 2×2 texels of the shadow map, every other level
-// from 2×2 nodes of the one below. What lies beyond the map is empty.
+// from 2×2 nodes of the one below. What lies beyond the map is empty. Bounds are exact.
 #include "pass.glsl"
 #include "hsm.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 2) uniform texture2D shadow_map;
-layout(binding = 3, rg32f) uniform image2DArray hsm;
+readonly BUFFER(views);
+readonly BUFFER(fits);
+TEXTURE(shadow_map);
+IMAGE(hsm, rg32f);
 
 vec2 below(ivec2 node, int level, uint map_size) {
     if (any(greaterThanEqual(node, ivec2(level > 0 ? hsm_side(level, map_size) : int(map_size))))) return vec2(0.0);

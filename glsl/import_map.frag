@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A host's shadow map as this engine's: reverse-Z without a far plane, d = near / z.
+// A host's shadow map as this engine's: reverse-Z without a far plane, d = near / z (algorithm.md §1), empty where the host
+// says so. The host's perspective may be any from the sub-light's centre.
 #include "pass.glsl"
 
-layout(binding = 0, scalar) readonly buffer Givens { Given givens[]; };
-layout(binding = 1) uniform texture2D host_map;
+readonly BUFFER(givens);
+TEXTURE(host_map);
 
 void main() {
     Given given = givens[push.index];

@@ -1,21 +1,23 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The visible surface from a host's images: positions, or depths with the host's projection, and normals.
+// The visible surface from a host's images: positions, or depths with the host's projection, and normals. Normals come out
+// with length 1; what has no position or no normal is no surface.
 #include "pass.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
+layout(constant_id = 24) const bool GIVEN_POSITIONS = false;  // a host's surface is positions rather than depths
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer HostBlock { Host host; };
-layout(binding = 2) uniform texture2D host_surface;
-layout(binding = 3) uniform texture2D host_normal;
-layout(binding = 4, rgba32f) writeonly uniform image2D position_world;
-layout(binding = 5, rgba32f) writeonly uniform image2D normal_world;
+readonly BUFFER(frame);
+readonly BUFFER(host);
+TEXTURE(host_surface);
+TEXTURE(host_normal);
+writeonly IMAGE(position_world, rgba32f);
+writeonly IMAGE(normal_world, rgba32f);
 
 // [scene units] The surface's position; w = 0 where there is none.
 vec4 position_at(ivec2 pixel) {
     vec4 texel = texelFetch(host_surface, pixel, 0);
-    if (POSITIONS) return vec4(texel.xyz, texel.w > 0.0 ? 1.0 : 0.0);
+    if (GIVEN_POSITIONS) return vec4(texel.xyz, texel.w > 0.0 ? 1.0 : 0.0);
     vec2 window = 2.0 * (vec2(pixel) + 0.5) / vec2(frame.size) - 1.0;
     vec4 clip = vec4(window, texel.x, 1.0);
     vec4 world = host.world_from_clip[0] * clip.x + host.world_from_clip[1] * clip.y

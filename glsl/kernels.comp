@@ -1,25 +1,25 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A kernel for each pixel, shrunk by repeated MSSM queries, and the pixels that need no integration
-// [Yang09 alg. 1, step 5].
+// A kernel for each pixel, shrunk by repeated MSSM queries, and the pixels that need no integration [SS07; Yang09 alg. 1,
+// step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds every cell that adds to the pixel's
+// integral.
 #include "pass.glsl"
-#include "depth.glsl"
-#include "mssm_levels.glsl"
+#include "receiver.glsl"
+#include "quadtree.glsl"
 #include "mssm.glsl"
 #include "kernel.glsl"
+#include "occlusion.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
-layout(binding = 5) uniform texture2DArray mssm;
-layout(binding = 6, scalar) writeonly buffer Kernels { Kernel kernels[]; };
-layout(binding = 7, scalar) buffer Occlusion { float occlusion[]; };
-layout(binding = 8, scalar) buffer CountersBlock { Counters counters; };
-layout(binding = 9) uniform texture2D shadow_map;
+readonly BUFFER(frame);
+readonly BUFFER(views);
+readonly BUFFER(fits);
+writeonly BUFFER(kernels);
+BUFFER(counters);
+TEXTURE(shadow_map);
+
+#include "surface.glsl"
 
 // Queries that shrink a kernel; the gain of a fifth is below a texel in all scenes seen.
 const int REFINEMENTS = 4;
@@ -45,11 +45,11 @@ Kernel kernel_of(View view, Fit fit, Receiver receiver) {
     float depth_max = 1.0;
     Cells cells;
     vec2 range = vec2(0.0);
-    for (int round = 0; round < REFINEMENTS; ++round) {
+    for (int i = 0; i < REFINEMENTS; ++i) {
         if (depth_max <= receiver.biased) return kernel;
         cells = kernel_cells(view, receiver, depth_max);
         if (any(greaterThan(cells.first, cells.last))) return kernel;
-        range = mssm_query(mssm, cells.first, cells.last, int(fit.level_count), size);
+        range = mssm_query(cells.first, cells.last, int(fit.level_count), size);
         if (range.y >= depth_max) break;
         depth_max = range.y;
     }
@@ -75,20 +75,18 @@ void count(uint status) {
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = pixel.y * frame.size.x + pixel.x;
+    uint index = index_of(pixel);
     View view = views[push.index];
     Fit fit = fits[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    vec3 to_point = position.xyz - view.center;
+    SurfacePoint point = surface_at(pixel);
+    vec3 to_point = point.position - view.center;
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (position.w > 0.0 && in_view(view, to_point, normal)) {
+    if (point.exists && in_view(view, to_point, point.normal)) {
         kernel.status = KERNEL_LIT;
-        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, normal));
+        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal));
     }
     kernels[index] = kernel;
-    float occluded = kernel.status == KERNEL_UMBRA ? view.weight : 0.0;
-    if (!ACCUMULATE) occlusion[index] = occluded;
-    else if (occluded > 0.0) occlusion[index] += occluded;
+    bool umbra = kernel.status == KERNEL_UMBRA;
+    if (!ACCUMULATE || umbra) add_occluded(index, umbra ? view.weight : 0.0);
     if (COUNT) count(kernel.status);
 }

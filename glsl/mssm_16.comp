@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A level of the MSSM in 16-bit floats, half the bytes: bounds are conservative, by integer arithmetic, since drivers
-// round differently when they store. What arrives is a 16-bit float already. Depths are in [0, 1], 0 = empty.
+// A level of the MSSM in 16-bit floats (mssm_build.glsl), half the bytes: bounds are conservative, by integer arithmetic,
+// since drivers round differently when they store. What arrives is a 16-bit float already. Depths are in [0, 1], 0 = empty.
 #define BOUNDS_FORMAT rg16f
 
 // The bits of a 32-bit float that a normal 16-bit float has not, and the smallest such.
@@ -15,4 +15,4 @@ vec2 stored(vec2 bounds) {
     return vec2(lower, bounds.y > 0.0 ? max(above, SMALLEST) : 0.0);
 }
 
-#include "mssm_level.glsl"
+#include "mssm_build.glsl"

@@ -1,14 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // A view's projection as a matrix, for hosts that draw its casters with pipelines of their own: what shadow_map.vert
-// computes. One invocation.
+// computes (algorithm.md §1). One invocation.
 #include "pass.glsl"
 
 layout(local_size_x = 1) in;
 
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 2, scalar) writeonly buffer Projections { Projection projections[]; };
+readonly BUFFER(views);
+readonly BUFFER(fits);
+writeonly BUFFER(projections);
 
 void main() {
     View view = views[push.index];

@@ -1,20 +1,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-// Bounds of the visible receivers that a view has to look at (algorithm.md §10): their box in the
-// face's frame, and the slopes of the four planes that enclose every line from them to the sub-light.
+// Bounds of the visible receivers that a view has to look at (algorithm.md §10): their box in the face's frame, and the
+// slopes of the four planes that enclose every line from them to the sub-light. The order of reduction does not matter.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "caster_region.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
+readonly BUFFER(frame);
+readonly BUFFER(views);
+BUFFER(fits);
+
+#include "surface.glsl"
 
 // Upper bounds of one invocation's receivers; see `Fit`.
 struct Reach {
@@ -41,11 +40,9 @@ void main() {
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
     uint pixels = frame.size.x * frame.size.y;
     for (uint index = gl_GlobalInvocationID.x; index < pixels; index += stride) {
-        ivec2 pixel = ivec2(index % frame.size.x, index / frame.size.x);
-        vec4 position = texelFetch(position_world, pixel, 0);
-        vec3 normal = texelFetch(normal_world, pixel, 0).xyz;
-        vec3 to_point = position.xyz - view.center;
-        if (position.w > 0.0 && in_view(view, to_point, normal)) include(reach, view, light, to_point);
+        SurfacePoint point = surface_at(pixel_at(index));
+        vec3 to_point = point.position - view.center;
+        if (point.exists && in_view(view, to_point, point.normal)) include(reach, view, light, to_point);
     }
     uint count = subgroupAdd(reach.count);
     vec3 upper = subgroupMax(reach.upper);

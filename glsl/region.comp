@@ -1,25 +1,25 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Bounds of casters that the host draws itself and that nothing is known of but how near they may be: the whole
-// region of the lines from the sub-light to the visible receivers (algorithm.md §10). One invocation.
+// Bounds of casters that the host draws itself and that nothing is known of but how near they may be: the whole region of
+// the lines from the sub-light to the visible receivers, which no visible shadow's caster is outside of (algorithm.md §10).
+// One invocation.
 #include "pass.glsl"
 #include "bounds.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 #include "caster_region.glsl"
 
 layout(local_size_x = 1) in;
 
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) buffer Fits { Fit fits[]; };
-layout(binding = 2, scalar) readonly buffer Givens { Given givens[]; };
+readonly BUFFER(views);
+BUFFER(fits);
+readonly BUFFER(givens);
 
 void main() {
     Fit fit = fits[push.index];
     if (fit.receiver_count == 0u) return;
     View view = views[push.index];
     Box light = box_of_light(view);
-    vec4 slopes = vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
-                       value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
+    vec4 slopes = slopes_of(fit);
     float far = max(value_of(fit.receiver_bounds[2], 0.0), light.upper.z);
     float near = min(givens[push.index].near, far);
     // Along a plane the tangent changes one way: its largest value is at one of the ends.

@@ -3,16 +3,16 @@
 // A light's visibility from what its views found occluded: 0 umbra … 1 lit; 0 where the surface faces
 // away from the whole light or lies behind it; NaN where there is no surface.
 #include "pass.glsl"
-#include "depth.glsl"
+#include "receiver.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Lights { Light lights[]; };
-layout(binding = 2) uniform texture2D position_world;
-layout(binding = 3) uniform texture2D normal_world;
-layout(binding = 4, scalar) readonly buffer Occlusion { float occlusion[]; };
-layout(binding = 5, scalar) writeonly buffer Visibility { float visibility[]; };
+readonly BUFFER(frame);
+readonly BUFFER(lights);
+readonly BUFFER(occlusion);
+writeonly BUFFER(visibility);
+
+#include "surface.glsl"
 
 // Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding.
 bool faces_light(Light light, vec3 position, vec3 normal) {
@@ -30,13 +30,12 @@ void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
     Light light = lights[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    uint index = pixel.y * frame.size.x + pixel.x;
+    SurfacePoint point = surface_at(pixel);
+    uint index = index_of(pixel);
     float result = uintBitsToFloat(0x7fc00000u);
-    if (position.w > 0.0) {
+    if (point.exists) {
         result = 0.0;
-        if (faces_light(light, position.xyz, normal))
+        if (faces_light(light, point.position, point.normal))
             result = light.view_count == 0u ? 1.0 : clamp(1.0 - occlusion[index] / light.weight_sum, 0.0, 1.0);
     }
     visibility[push.index * frame.size.x * frame.size.y + index] = result;

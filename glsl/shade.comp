@@ -1,23 +1,23 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The picture: each light's unshadowed irradiance times its visibility, on a diffuse surface, tone-mapped and
-// sRGB-encoded.
+// The picture: each light's unshadowed irradiance times its visibility, on a diffuse surface, tone-mapped [Reinhard 2002,
+// eq. 4] and sRGB-encoded.
 #include "pass.glsl"
 #include "irradiance.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Lights { Light lights[]; };
-layout(binding = 2, scalar) readonly buffer ExposureBlock { Exposure exposure; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
-layout(binding = 5) uniform texture2D albedo;
-layout(binding = 6, scalar) readonly buffer Visibility { float visibility[]; };
-layout(binding = 7, scalar) writeonly buffer Picture { uint picture[]; };
+readonly BUFFER(frame);
+readonly BUFFER(lights);
+readonly BUFFER(exposure);
+TEXTURE(albedo);
+readonly BUFFER(visibility);
+writeonly BUFFER(picture);
+
+#include "surface.glsl"
 
 vec3 encoded(vec3 color) {
-    // Extended Reinhard [Reinhard 2002, eq. 4] on the brightest channel, white at 4: hues are kept.
+    // Extended Reinhard on the brightest channel, white at 4: hues are kept.
     float peak = max(max(color.r, color.g), max(color.b, 1e-6));
     color *= (1.0 + peak / 16.0) / (1.0 + peak);
     color = clamp(color, 0.0, 1.0);
@@ -27,16 +27,15 @@ vec3 encoded(vec3 color) {
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = pixel.y * frame.size.x + pixel.x;
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
+    uint index = index_of(pixel);
+    SurfacePoint point = surface_at(pixel);
     vec3 color = vec3(0.0);
-    if (position.w > 0.0) {
+    if (point.exists) {
         vec3 light_sum = vec3(exposure.ambient);
         for (uint i = 0u; i < exposure.light_count; ++i) {
             float seen = visibility[i * frame.size.x * frame.size.y + index];
             if (!(seen > 0.0)) continue;
-            light_sum += seen * irradiance(lights[i], position.xyz, normal) / PI * lights[i].intensity;
+            light_sum += seen * irradiance(lights[i], point.position, point.normal) / PI * lights[i].intensity;
         }
         color = texelFetch(albedo, ivec2(pixel), 0).rgb * light_sum * exposure.scale;
     }

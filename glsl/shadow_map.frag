@@ -3,11 +3,12 @@
 // The holes of alpha-masked casters, and what is peeled away in front of the next layer. Opaque casters of the first
 // layer are drawn without a fragment shader.
 #include "pass.glsl"
-
-layout(binding = 5, scalar) readonly buffer Surfaces { Surface surfaces[]; };
-layout(binding = 6, scalar) readonly buffer Texels { uint texels[]; };
-layout(binding = 7) uniform texture2DArray layers;
 #include "texture.glsl"
+
+layout(constant_id = 14) const bool PEEL = false;    // draw what lies behind the last layer
+layout(constant_id = 22) const bool MASKED = false;  // the casters drawn have holes
+
+TEXTURE(layers);
 
 layout(location = 0) in vec2 uv;
 layout(location = 1) flat in uint surface_index;

@@ -2,16 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 // A sub-light's shadow map, reverse-Z without a far plane: d = near / z.
 #include "pass.glsl"
-#include "depth.glsl"
-
-layout(binding = 0, scalar) readonly buffer Views { View views[]; };
-layout(binding = 1, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 2, scalar) readonly buffer Positions { vec3 positions[]; };
-layout(binding = 3, scalar) readonly buffer Texcoords { vec2 texcoords[]; };
-layout(binding = 4, scalar) readonly buffer VertexSurfaces { uint vertex_surfaces[]; };
-
-layout(binding = 8, scalar) readonly buffer PositionResiduals { vec3 position_residuals[]; };
+#include "receiver.glsl"
 #include "caster_position.glsl"
+
+readonly BUFFER(views);
+readonly BUFFER(fits);
+readonly BUFFER(texcoords);
+readonly BUFFER(vertex_surfaces);
 
 layout(location = 0) out vec2 uv;
 layout(location = 1) flat out uint surface_index;

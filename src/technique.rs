@@ -155,7 +155,7 @@ impl Recipe {
 
     /// A kernel for each penumbra pixel, and a pass over the list of them.
     fn over_pixels(name: &'static str, shader: &'static str) -> Self {
-        let pass = Pass::dispatch(name, shader, Domain::PixelList).with(SINGLE);
+        let pass = Pass::dispatch(name, shader, Domain::PixelList);
         Self {
             mssm: true,
             words: 1,
@@ -214,15 +214,6 @@ const TURNS_OF_WALKS: u32 = 4;
 /// The MSSM walked pixel by pixel [Yang09 §4.2].
 const PIXELS: Pass = Pass::dispatch(
     "pixel_visibility",
-    "packet_visibility.comp",
+    "pixel_visibility.comp",
     Domain::PixelList,
-)
-.with(SINGLE);
-
-/// Whoever works off the pixel list has packets of one pixel.
-const SINGLE: &[(&str, u32)] = &[
-    ("PACKET_WIDTH", 1),
-    ("PACKET_HEIGHT", 1),
-    ("HELD", 1),
-    ("LANES", 0),
-];
+);

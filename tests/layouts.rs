@@ -1,5 +1,6 @@
 //! Every struct that host and shaders share has one layout: offsets, array strides and array lengths
-//! of the host's structs against what the compiled shaders say.
+//! of the host's structs against what the compiled shaders say. Resources and specialization constants
+//! have one number each in all shaders.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -54,8 +55,15 @@ impl Reflection {
         found.unwrap_or_else(|| panic!("{}: %{id} is not defined", self.file))
     }
 
-    /// Name and members of every struct type.
-    fn structs(&self) -> Vec<(String, Vec<Member>)> {
+    /// Members of a struct type.
+    fn members(&self, id: u32) -> Vec<Member> {
+        let mut structs = self.structs().into_iter();
+        let found = structs.find_map(|(known, _, members)| (known == id).then_some(members));
+        found.unwrap_or_else(|| panic!("{}: %{id} is no struct", self.file))
+    }
+
+    /// Id, name and members of every struct type.
+    fn structs(&self) -> Vec<(u32, String, Vec<Member>)> {
         let mut names = BTreeMap::new();
         let mut members: BTreeMap<u32, Vec<Member>> = BTreeMap::new();
         for ty in &self.module.types_global_values {
@@ -99,7 +107,7 @@ impl Reflection {
         }
         members
             .into_iter()
-            .map(|(id, members)| (names.get(&id).cloned().unwrap_or_default(), members))
+            .map(|(id, members)| (id, names.get(&id).cloned().unwrap_or_default(), members))
             .collect()
     }
 
@@ -151,6 +159,55 @@ impl Reflection {
             }
             other => (format!("{other:?}"), 0, 0),
         }
+    }
+
+    fn name(&self, id: u32) -> String {
+        let named = |note: &Instruction| match &note.operands[..] {
+            [Operand::IdRef(target), Operand::LiteralString(name)] if *target == id => {
+                Some(name.clone())
+            }
+            _ => None,
+        };
+        let found = self.module.debug_names.iter().find_map(named);
+        found.unwrap_or_else(|| panic!("{}: %{id} has no name", self.file))
+    }
+
+    /// Id and number of everything that is decorated so.
+    fn numbered(&self, with: Decoration) -> Vec<(u32, u32)> {
+        let number = |note: &Instruction| match note.operands[..] {
+            [
+                Operand::IdRef(id),
+                Operand::Decoration(decoration),
+                Operand::LiteralBit32(number),
+            ] if decoration == with => Some((id, number)),
+            _ => None,
+        };
+        self.module.annotations.iter().filter_map(number).collect()
+    }
+
+    /// Binding and name of every resource.
+    fn resources(&self) -> Vec<(u32, String)> {
+        let name = |variable: u32| {
+            let operand = |id: u32, at: usize| match self.definition(id).operands[at] {
+                Operand::IdRef(id) => id,
+                ref other => panic!("{}: unexpected operand {other:?}", self.file),
+            };
+            let pointer = self.definition(variable).result_type.expect("a variable");
+            let ty = operand(pointer, 1);
+            match self.definition(ty).class.opcode {
+                // An anonymous block goes by the name of its member.
+                Op::TypeStruct => self.members(ty)[0].name.clone(),
+                _ => self.name(variable),
+            }
+        };
+        let bindings = self.numbered(Decoration::Binding).into_iter();
+        bindings.map(|(id, number)| (number, name(id))).collect()
+    }
+
+    /// Number and name of every specialization constant.
+    fn constants(&self) -> Vec<(u32, String)> {
+        let ids = self.numbered(Decoration::SpecId).into_iter();
+        ids.map(|(id, number)| (number, self.name(id))).collect()
     }
 
     /// [byte] Stride of every runtime array of a struct called `name`.
@@ -207,7 +264,7 @@ fn shared_structs_have_one_layout() {
     assert!(shaders.len() >= 14, "only {} shaders", shaders.len());
     let mut found = BTreeSet::new();
     for shader in &shaders {
-        for (name, members) in shader.structs() {
+        for (_, name, members) in shader.structs() {
             let Some(layout) = LAYOUTS.iter().find(|layout| layout.name == name) else {
                 continue;
             };
@@ -246,4 +303,30 @@ fn arrays_of_shared_structs_have_the_hosts_stride() {
     ] {
         assert!(found.contains(name), "no shader has an array of {name}");
     }
+}
+
+/// Compares numbers and names over all shaders; panics where a number has two names or a name two numbers.
+fn one_number_each(kind: &str, of: impl Fn(&Reflection) -> Vec<(u32, String)>) {
+    let mut names = BTreeMap::new();
+    let mut numbers = BTreeMap::new();
+    for shader in Reflection::all() {
+        for (number, name) in of(&shader) {
+            let place = format!("{kind} {number}, {name}, in {}", shader.file);
+            let known = names.entry(number).or_insert_with(|| name.clone());
+            assert_eq!(*known, name, "{place}");
+            let known = numbers.entry(name).or_insert(number);
+            assert_eq!(*known, number, "{place}");
+        }
+    }
+    assert!(names.len() > 20, "only {} found: {kind}", names.len());
+}
+
+#[test]
+fn a_resource_has_one_binding_in_all_shaders() {
+    one_number_each("binding", Reflection::resources);
+}
+
+#[test]
+fn a_specialization_constant_has_one_id_in_all_shaders() {
+    one_number_each("constant", Reflection::constants);
 }

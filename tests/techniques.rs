@@ -83,7 +83,7 @@ fn siblings() -> Vec<(&'static str, Settings)> {
     ]
 }
 
-/// t_p and the biased depth of a pixel, as `project` in `depth.glsl` has them for a receiver that the map's axis meets
+/// t_p and the biased depth of a pixel, as `project` in `receiver.glsl` has them for a receiver that the map's axis meets
 /// at a right angle.
 fn place(view: &View, fit: &Fit, position: Vec3) -> (Vec3, f32) {
     let axis = |axis: [f32; 3]| (position - Vec3::from(view.center)).dot(Vec3::from(axis));

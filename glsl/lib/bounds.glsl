@@ -1,4 +1,5 @@
-// Bounds reduced by atomicMax: integers in the order of the floats they stand for, never 0.
+// Bounds reduced by atomicMax: integers in the order of the floats they stand for, never 0, so that 0 is "nothing yet". A
+// lower bound is the upper bound of the negated value.
 
 uint bound_of(float value) {
     uint bits = floatBitsToUint(value);

@@ -1,6 +1,11 @@
-// Casters as a view sees them. Needs the bindings `positions` and `position_residuals`.
+// Casters as a view sees them: a vertex in the frame of the view's face (algorithm.md §1). Needs receiver.glsl.
 
-// A vertex in the frame of the view's face. What is near to the light is as exact as f32 is there, wherever positions are
+layout(constant_id = 25) const bool RESIDUALS = false;  // casters' positions have residuals
+
+readonly BUFFER(positions);
+readonly BUFFER(position_residuals);
+
+// What is near to the light is as exact as f32 is there, wherever positions are
 // relative to: what their rounding left over is added to the difference.
 vec3 caster_position(View view, uint vertex) {
     vec3 residual = RESIDUALS ? position_residuals[vertex] : vec3(0.0);

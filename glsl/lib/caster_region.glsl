@@ -1,5 +1,6 @@
 // The region that holds every point of every line from the sub-light to a visible receiver, in the
-// frame of the view's face (algorithm.md §10). What lies outside casts no visible shadow.
+// frame of the view's face (algorithm.md §10). What lies outside casts no visible shadow. Needs bounds.glsl and
+// receiver.glsl.
 
 struct Box {
     vec3 lower;
@@ -27,6 +28,12 @@ vec4 slopes_to(Box light, vec3 receiver) {
     float height = max(receiver.z - light.lower.z, 1e-30);
     vec4 slope = vec4(receiver.xy - light.upper.xy, light.lower.xy - receiver.xy) / height;
     return light.upper.z > light.lower.z ? max(slope, vec4(0.0)) : slope;
+}
+
+// The widest of all receivers'.
+vec4 slopes_of(Fit fit) {
+    return vec4(value_of(fit.receiver_slopes[0], 0.0), value_of(fit.receiver_slopes[1], 0.0),
+                value_of(fit.receiver_slopes[2], 0.0), value_of(fit.receiver_slopes[3], 0.0));
 }
 
 const uint PLANE_COUNT = 11u;

@@ -1,5 +1,6 @@
-// Marching squares on the dual grid (algorithm.md §2). Corners of a cell count counter-clockwise from
-// (0, 0): 0 (0, 0), 1 (1, 0), 2 (1, 1), 3 (0, 1). Edge e runs from corner e to corner e + 1.
+// Contours of occluders by marching squares on the dual grid [GBP07; algorithm.md §2]. Corners of a cell count
+// counter-clockwise from (0, 0): 0 (0, 0), 1 (1, 0), 2 (1, 1), 3 (0, 1). Edge e runs from corner e to corner e + 1. Needs
+// receiver.glsl.
 
 // Per mask of occluding corners (bit = corner): number of segments, then start and end edge of each, two
 // bits apiece. A segment has the occluders on its left; the two saddles keep them apart.
@@ -9,6 +10,14 @@ const uint SEGMENTS[16] = uint[16](
 uint mask_of(vec4 depths, vec4 limits) {
     return uint(depths.x > limits.x) | uint(depths.y > limits.y) << 1 | uint(depths.z > limits.z) << 2
          | uint(depths.w > limits.w) << 3;
+}
+
+// The corners of a cell that occlude a receiver.
+uint occluding(Receiver receiver, ivec2 cell, vec4 depths) {
+    vec2 at = vec2(cell);
+    return uint(occludes(receiver, at, depths.x)) | uint(occludes(receiver, at + vec2(1.0, 0.0), depths.y)) << 1
+         | uint(occludes(receiver, at + vec2(1.0, 1.0), depths.z)) << 2
+         | uint(occludes(receiver, at + vec2(0.0, 1.0), depths.w)) << 3;
 }
 
 uint segment_count(uint mask) { return SEGMENTS[mask] & 3u; }
@@ -43,7 +52,7 @@ Edge edge_of(ivec2 cell, vec4 depths, uint mask, uint segment) {
 
 // On which side of an edge the point `t` lies: +1 left (the occluder's), −1 right.
 // For a point in the edge's cell every difference and product is exact, so the sign is that of the difference
-// of two floats: the centre test and the integration ask the same question and get the same answer (traps 1, 2).
+// of two floats: the centre test and the integration ask the same question and get the same answer (algorithm.md §3).
 float side_of(Edge edge, vec2 t) {
     precise vec2 way = edge.b.xy - edge.a.xy;
     precise vec2 offset = t - edge.a.xy;

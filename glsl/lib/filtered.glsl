@@ -1,9 +1,24 @@
-// Techniques that test single samples of the map around a pixel's projection. Needs the bindings `frame`, `views`,
-// `fits`, `position_world`, `normal_world`, `shadow_map`, `occlusion` and `counters`; the technique defines
-// `occluded_of`.
+// A technique that tests single samples of the map around a pixel's projection: an invocation for each pixel. The technique
+// defines two functions, `hidden_share` and `samples_read_by_pixel`; the rest is here.
 
-// [0, 1] Share of the sub-light that the technique holds for occluded.
-float occluded_of(View view, Fit fit, uvec2 pixel, Receiver receiver);
+#include "receiver.glsl"
+#include "occlusion.glsl"
+#include "count.glsl"
+
+layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
+
+readonly BUFFER(frame);
+readonly BUFFER(views);
+readonly BUFFER(fits);
+TEXTURE(shadow_map);
+
+#include "surface.glsl"
+
+// [0, 1] Share of the sub-light that the technique holds for hidden.
+float hidden_share(View view, Fit fit, uvec2 pixel, Receiver receiver);
+
+// Depths that it reads for each pixel that the view looks at.
+uint samples_read_by_pixel();
 
 // The depth at the sample nearest to `t`; beyond the map it is empty.
 float nearest_depth(View view, vec2 t) {
@@ -12,25 +27,22 @@ float nearest_depth(View view, vec2 t) {
     return texelFetch(shadow_map, texel, 0).x;
 }
 
-// A pixel of the view; `samples`: depths read for each pixel that the view looks at.
-void filter_pixel(uint samples) {
+void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = pixel.y * frame.size.x + pixel.x;
     View view = views[push.index];
     Fit fit = fits[push.index];
-    vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    vec3 normal = texelFetch(normal_world, ivec2(pixel), 0).xyz;
-    vec3 to_point = position.xyz - view.center;
-    bool looked_at = position.w > 0.0 && in_view(view, to_point, normal) && fit.level_count > 0u;
+    SurfacePoint point = surface_at(pixel);
+    vec3 to_point = point.position - view.center;
+    bool looked_at = point.exists && in_view(view, to_point, point.normal) && fit.level_count > 0u;
     float occluded = 0.0;
     // A loop, since some drivers execute both sides of an `if`: of the pixels of a side face most are another face's.
     [[dont_unroll]] for (uint once = 0u; once < uint(looked_at); ++once)
-        occluded = view.weight * occluded_of(view, fit, pixel, project(view, fit, to_point, normal));
-    if (!ACCUMULATE) occlusion[index] = occluded;
-    else if (looked_at) occlusion[index] += occluded;
+        occluded = view.weight * hidden_share(view, fit, pixel, project(view, fit, to_point, point.normal));
+    if (!ACCUMULATE || looked_at) add_occluded(index_of(pixel), occluded);
     if (COUNT && looked_at) {
+        samples_read = samples_read_by_pixel();
         atomicAdd(counters.pixels, 1u);
-        COUNT_WIDE(counters.samples_read, samples)
+        count_work();
     }
 }

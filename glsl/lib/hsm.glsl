@@ -1,6 +1,8 @@
 // The hierarchical shadow map [DU07]: a pyramid of least and largest depths over aligned squares of 2^l texels,
 // levels 1 and up. Its levels stand below one another in one image.
 
+#define RESOURCE_hsm(AS) AS(48, texture2DArray, image2DArray, hsm)
+
 // Levels until a single node is left.
 uint hsm_levels(uint map_size) { return uint(findMSB(map_size - 1u)) + 1u; }
 

@@ -1,4 +1,5 @@
-// Kernels [GBP06, SS07; Yang09 eq. 1]: which dual cells can project onto the sub-light.
+// Kernels [GBP06, SS07; Yang09 eq. 1; algorithm.md §5]: which dual cells can project onto the sub-light. No cell that does
+// is left out. Needs receiver.glsl.
 
 // [texel] Farther than any map reaches from where a receiver falls.
 const float ENDLESS = 1e9;

@@ -1,5 +1,8 @@
 // Micropatches: each occluding texel of the shadow map is a rectangle parallel to the map at the texel's depth,
-// and their back-projections' areas add up [AHL06, GBP06]. Needs `listed.glsl` and `radial.glsl`.
+// and their back-projections' areas add up [AHL06, GBP06]. For techniques over the pixel list (pixel_list.glsl); needs
+// radial.glsl.
+
+layout(constant_id = 15) const bool GAP_FILLING = false;  // patches reach out to their neighbours
 
 // [half sizes²] The sub-light's area inside a box, for a sub-light that is one.
 float area_of_boxes(View view, vec2 lower, vec2 upper) {
@@ -45,7 +48,7 @@ float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
     vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
     // Called in one place: drivers inline it, and some take minutes for two.
     float area = 0.0;
-    if (OBLIQUE || ROUND) area = area_in_quadrangle(view, corners, sides);
+    if (OBLIQUE || DISC_LIGHT) area = area_in_quadrangle(view, corners, sides);
     else area = area_of_boxes(view, lower, upper);
     return area;
 }
@@ -54,40 +57,14 @@ float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
 float occluder_or(Receiver receiver, float depth, float own) { return depth > receiver.biased ? depth : own; }
 
 // As `patch_area`, with the neighbours' depths read from the map; 0 where `depth` is, which stands for no patch.
-float patch_area_at(Listed listed, uint layer, ivec2 texel, float depth) {
+float patch_area_at(uint layer, ivec2 texel, float depth) {
     vec3 depths = vec3(depth);
     if (GAP_FILLING) {
-        depths.y = occluder_or(listed.receiver, depth_at(layer, max(texel - ivec2(1, 0), ivec2(0))), depth);
-        depths.z = occluder_or(listed.receiver, depth_at(layer, max(texel - ivec2(0, 1), ivec2(0))), depth);
+        depths.y = occluder_or(pixel.receiver, depth_at(layer, max(texel - ivec2(1, 0), ivec2(0))), depth);
+        depths.z = occluder_or(pixel.receiver, depth_at(layer, max(texel - ivec2(0, 1), ivec2(0))), depth);
         samples_read += depth > 0.0 ? 2u : 0u;
     }
     edges_extracted += uint(depth > 0.0);
-    float area = patch_area(listed.view, listed.receiver, texel, depths);
+    float area = patch_area(pixel.view, pixel.receiver, texel, depths);
     return depth > 0.0 ? area : 0.0;
-}
-
-// Goes on to the next occluding texel and stays there; returns its depth, or 0 when there is none left.
-float find_patch(Listed listed, uint layer, inout Scan scan) {
-    float depth = 0.0;
-    uint turns = 0u;
-    while (depth == 0.0 && !at_end(scan) && !out_of_turns(turns)) {
-        ++turns;
-        depth = occluder_or(listed.receiver, depth_at(layer, scan.at), 0.0);
-        if (depth == 0.0) advance(scan);
-    }
-    nodes_visited += turns;
-    samples_read += turns;
-    steps += subgroupMax(turns) + 1u;
-    return depth;
-}
-
-// Adds the areas of a layer's patches up. The loops are nested so that invocations side by side look for occluders
-// together and add up together.
-void add_patches(Listed listed, uint layer, inout Scan scan, inout float sum) {
-    while (!at_end(scan) && !out_of_turns(0u)) {
-        ++steps;
-        float depth = find_patch(listed, layer, scan);
-        sum += patch_area_at(listed, layer, scan.at, depth);
-        if (depth > 0.0) advance(scan);
-    }
 }

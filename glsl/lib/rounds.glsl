@@ -1,7 +1,11 @@
-// A driver may end all loops of an invocation after a number of turns (see `steps`). What is not finished by then goes
-// on in the next round: a dispatch that reaches only as far as there is something left to do. In between, a pixel's
-// sum waits in the buffer `partial` and the place to go on at in the buffer `progress`. `push.level` is the round.
-// Needs the binding `rounds`: of each view, the dispatches of all rounds.
+// Lists are worked off in up to ROUNDS dispatches (budget.glsl says why there may be more than one). `push.level` is the
+// round; each reaches only as far as there is something left to do for it.
+
+BUFFER(rounds);
+
+bool is_first_round() { return push.level == 0u; }
+
+bool is_last_round() { return push.level + 1u == ROUNDS; }
 
 // Makes a dispatch reach work group `group`.
 #define REACH(groups, group)                                                \
@@ -11,11 +15,8 @@
         atomicMax(groups.z, 1u);                                            \
     }
 
-// Place of one of the view's rounds in the buffer `rounds`.
-uint at_round(uint round) { return push.index * ROUNDS + round; }
+// Makes round `i` of the view's packet list reach a work group.
+void reach_packets(uint i, uint group) { REACH(rounds[push.index * ROUNDS + i].packet_groups, group) }
 
-bool is_first_round() { return push.level == 0u; }
-
-bool is_last_round() { return push.level + 1u == ROUNDS; }
-
-bool out_of_turns(uint turns) { return steps + turns >= STEPS_MAX; }
+// Makes round `i` of the view's pixel list reach a work group.
+void reach_pixels(uint i, uint group) { REACH(rounds[push.index * ROUNDS + i].pixel_groups, group) }

@@ -1,5 +1,7 @@
 // Textures in a buffer of RGBA8 texels: one code for every driver, and for the ray tracer's twin.
-// Needs the bindings `surfaces` and `texels`.
+
+readonly BUFFER(surfaces);
+readonly BUFFER(texels);
 
 int wrapped(int texel, int size, uint wrap) {
     if (wrap == 2u) return clamp(texel, 0, size - 1);

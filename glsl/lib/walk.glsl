@@ -1,4 +1,5 @@
-// A walk through a quadtree below one root after the other, depth first [Yang09 alg. 3].
+// A walk through a quadtree below one root after the other, depth first, with the stack of [DU07] as [Yang09 alg. 3] has it:
+// a node is either descended into or passed by. Needs kernel.glsl.
 
 // The stack is one integer: two bits for each level between the root and the current node, which say which
 // child it is.
@@ -38,14 +39,12 @@ void pass_by(inout Walk walk, ivec2 first, ivec2 last) {
     }
 }
 
+// Where the next round goes on with a walk.
 Progress progress_of(Walk walk) {
-    uint node = uint(walk.node.x) | uint(walk.node.y) << 16;
-    uint root = uint(walk.root.x) | uint(walk.root.y) << 16;
-    return Progress(walk.ended ? FINISHED : node, root, uint(walk.level), walk.stack);
+    return Progress(walk.ended ? FINISHED : packed(walk.node), packed(walk.root), uint(walk.level), walk.stack);
 }
 
 // A walk with roots of level `top` that goes on where it stood.
-Walk walk_on(Progress at, int top) {
-    ivec2 root = ivec2(at.root & 0xffffu, at.root >> 16);
-    return Walk(root, ivec2(at.next & 0xffffu, at.next >> 16), top, int(at.level), at.stack, at.next == FINISHED);
+Walk resumed_walk(Progress at, int top) {
+    return Walk(unpacked(at.root), unpacked(at.next), top, int(at.level), at.stack, at.next == FINISHED);
 }

@@ -1,24 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Hard shadows: the nearest sample decides, or the mean of the tests of its neighbourhood [Williams78; percentage
-// closer filtering by Reeves, Salesin and Cook 1987].
+// Hard shadows: the nearest sample decides [Williams78], or the mean of the tests of its neighbourhood (percentage-closer
+// filtering by Reeves, Salesin and Cook 1987). Right for a light without extent.
 #include "pass.glsl"
-#include "depth.glsl"
-#include "count.glsl"
-
-layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
-
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
-layout(binding = 5) uniform texture2D shadow_map;
-layout(binding = 6, scalar) buffer Occlusion { float occlusion[]; };
-layout(binding = 7, scalar) buffer CountersBlock { Counters counters; };
 #include "filtered.glsl"
 
-float occluded_of(View view, Fit fit, uvec2 pixel, Receiver receiver) {
+layout(constant_id = 21) const int FILTER_REACH = 0;  // [texel] of the percentage-closer filter
+
+float hidden_share(View view, Fit fit, uvec2 pixel, Receiver receiver) {
     float hidden = 0.0;
     for (int y = -FILTER_REACH; y <= FILTER_REACH; ++y)
         for (int x = -FILTER_REACH; x <= FILTER_REACH; ++x)
@@ -27,4 +16,4 @@ float occluded_of(View view, Fit fit, uvec2 pixel, Receiver receiver) {
     return hidden / (side * side);
 }
 
-void main() { filter_pixel(uint((2 * FILTER_REACH + 1) * (2 * FILTER_REACH + 1))); }
+uint samples_read_by_pixel() { return uint((2 * FILTER_REACH + 1) * (2 * FILTER_REACH + 1)); }

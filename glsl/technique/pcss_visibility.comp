@@ -1,22 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Percentage-closer soft shadows [Fernando05]: the mean depth of the blockers found around the pixel's projection
-// tells how wide to filter.
+// tells how wide to filter. In [0, 1], and the same in every frame; the penumbra is a guess.
 #include "pass.glsl"
-#include "depth.glsl"
-#include "count.glsl"
-
-layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
-
-layout(binding = 0, scalar) readonly buffer FrameBlock { Frame frame; };
-layout(binding = 1, scalar) readonly buffer Views { View views[]; };
-layout(binding = 2, scalar) readonly buffer Fits { Fit fits[]; };
-layout(binding = 3) uniform texture2D position_world;
-layout(binding = 4) uniform texture2D normal_world;
-layout(binding = 5) uniform texture2D shadow_map;
-layout(binding = 6, scalar) buffer Occlusion { float occlusion[]; };
-layout(binding = 7, scalar) buffer CountersBlock { Counters counters; };
 #include "filtered.glsl"
+
+layout(constant_id = 19) const uint BLOCKER_SAMPLES = 1u;  // of the blocker search
+layout(constant_id = 20) const uint FILTER_SAMPLES = 1u;   // of the percentage-closer filter
 
 const float TAU = 6.28318530718;
 
@@ -25,7 +15,7 @@ vec2 sequence(uint i, vec2 shift) { return fract(vec2(0.7548776662, 0.5698402910
 
 // [half sizes] A point of the sub-light; equal areas for equal areas of the square.
 vec2 point_of(View view, vec2 at) {
-    if (!ROUND) return mix(view.extent.xy, view.extent.zw, at);
+    if (!DISC_LIGHT) return mix(view.extent.xy, view.extent.zw, at);
     float angle = TAU * at.y;
     return view.rim.xy + view.rim.z * sqrt(at.x) * vec2(cos(angle), sin(angle));
 }
@@ -40,7 +30,7 @@ vec2 shift_of(uvec2 pixel) {
 // [texel] Where an occluder at `depth` hides the light's point `q`.
 vec2 place_of(Receiver receiver, vec2 q, float depth) { return receiver.t + texel_offset(receiver, q, depth).xy; }
 
-float occluded_of(View view, Fit fit, uvec2 pixel, Receiver receiver) {
+float hidden_share(View view, Fit fit, uvec2 pixel, Receiver receiver) {
     vec2 shift = shift_of(pixel);
     float distances = 0.0;
     float blockers = 0.0;
@@ -61,4 +51,4 @@ float occluded_of(View view, Fit fit, uvec2 pixel, Receiver receiver) {
     return hidden / float(FILTER_SAMPLES);
 }
 
-void main() { filter_pixel(BLOCKER_SAMPLES + FILTER_SAMPLES); }
+uint samples_read_by_pixel() { return BLOCKER_SAMPLES + FILTER_SAMPLES; }

@@ -1,4 +1,4 @@
-//! A receiver as a view sees it (algorithm.md §1, §8): mirror of `lib/depth.glsl`, in f32 and operation by
+//! A receiver as a view sees it (algorithm.md §1, §8): mirror of `lib/receiver.glsl`, in f32 and operation by
 //! operation, because statuses, cells and contours are decided on these very values.
 
 use glam::{Vec2, Vec3};

@@ -28,7 +28,7 @@ const IMPORT_DEPTHS: Pass =
     Pass::dispatch("import_surface", "import_surface.comp", Domain::Image).lent(Lent::Surface);
 
 /// The same from positions.
-const IMPORT_POSITIONS: Pass = IMPORT_DEPTHS.with(&[("POSITIONS", 1)]);
+const IMPORT_POSITIONS: Pass = IMPORT_DEPTHS.with(&[("GIVEN_POSITIONS", 1)]);
 
 /// The triangles of a host's meshes where they stand.
 const GATHER: Pass = Pass::dispatch("gather", "gather.comp", Domain::Instances).lent(Lent::Mesh);

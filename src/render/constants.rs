@@ -8,9 +8,9 @@ use crate::plan::{LightPlan, Plan, ViewPlan, ViewSet};
 pub fn of_frame(plan: &Plan) -> Constants {
     Constants::from([
         ("TEXTURED", plan.textured.into()),
-        ("STEPS_MAX", plan.loop_turns),
+        ("LOOP_BUDGET", plan.loop_turns),
         ("ROUNDS", plan.rounds()),
-        ("GIVEN", (plan.casters == Casters::Maps).into()),
+        ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
     ])
 }
@@ -19,7 +19,7 @@ pub fn of_frame(plan: &Plan) -> Constants {
 pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
     let mut constants: Constants = set.settings.constants().into_iter().collect();
     constants.extend([
-        ("ROUND", u32::from(view.is_round())),
+        ("DISC_LIGHT", u32::from(view.is_round())),
         ("OBLIQUE", view.oblique.into()),
         ("ACCUMULATE", light.accumulates().into()),
         ("LAYERS", set.recipe.layers.max(1)),
@@ -31,4 +31,22 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
 pub fn of_pass(pass: &Pass, mut constants: Constants) -> Constants {
     constants.extend(pass.constants.iter().copied());
     constants
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gpu::is_constant;
+    use crate::technique::{KNOBS, Technique};
+
+    #[test]
+    fn what_techniques_set_is_what_some_shader_uses() {
+        let own = Technique::ALL
+            .iter()
+            .flat_map(|technique| technique.variants());
+        let own = own.flat_map(|settings| settings.constants());
+        let of_knobs = KNOBS.iter().filter_map(|knob| knob.row.constant);
+        for name in own.map(|(name, _)| name).chain(of_knobs) {
+            assert!(is_constant(name), "no shader uses {name}");
+        }
+    }
 }

@@ -50,14 +50,14 @@ impl Method for PacketContour {
 
     fn constants(&self, settings: &Settings) -> Vec<(&'static str, u32)> {
         let (width, height) = settings.packet;
-        let held = match settings.mapping {
+        let slots = match settings.mapping {
             Mapping::Lanes => 1,
             Mapping::Serial => width * height,
         };
         vec![
             ("PACKET_WIDTH", width),
             ("PACKET_HEIGHT", height),
-            ("HELD", held),
+            ("SLOTS", slots),
             ("REPROCESS", (settings.leaf == Leaf::Reprocess).into()),
             ("CONTOURS", 1),
         ]

@@ -1,12 +1,12 @@
-// One level of the dual-grid MSSM [Yang09 §4.2]: level 0 from the four samples of each dual cell, every
+// One level of the dual-grid MSSM [Yang09 §4.2; algorithm.md §4]: level 0 from the four samples of each dual cell, every
 // other level from four texels of the one below, half its side apart. Who includes it says in which format bounds
 // are stored, BOUNDS_FORMAT, and how they get there, `vec2 stored(vec2 bounds)`.
 #include "pass.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
-layout(binding = 0) uniform texture2D shadow_map;
-layout(binding = 1, BOUNDS_FORMAT) uniform image2DArray mssm;
+TEXTURE(shadow_map);
+IMAGE(mssm, BOUNDS_FORMAT);
 
 vec2 below(ivec2 cell, int size) {
     if (any(greaterThanEqual(cell, ivec2(size)))) return vec2(0.0);

@@ -1,5 +1,5 @@
-// A receiver as a view sees it: where it falls on the map, how deep, and the map from occluders to
-// the light (algorithm.md §1, §8).
+// A receiver as a view sees it: where it falls on the map, how deep, which samples occlude it, and where the line through an
+// occluder meets the light (algorithm.md §1, §8). Passes that project a receiver anew come to the same bits.
 
 struct Receiver {
     // [texel] Its projection, t_p. Never on a line of contour vertices: see `project`.

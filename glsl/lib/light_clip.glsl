@@ -1,4 +1,5 @@
-// The sub-light as the area that segments are integrated over (algorithm.md §3).
+// The sub-light as the area that segments are integrated over: clipping to its outline, and directions around its centre
+// (algorithm.md §3).
 
 // Where the direction `q` leaves the square [−1, 1]², counted along its border: 0 at +x, 2 at +y, 4 at
 // −x, 6 at −y; [−1, 7]. Opposite directions are exactly 4 apart.
@@ -10,8 +11,8 @@ float perimeter(vec2 q) {
 
 // How often the way from perimeter parameter a to b, seen from the centre under less than 180°, must be
 // corrected by a full turn (8). side: +1 or −1, on which side of the segment the centre lies (left, right).
-// Without it the rounding of a direction could turn a half-turn over (trap 2).
-float turns(float a, float b, float side) {
+// Without it the rounding of a direction could turn a half-turn over (algorithm.md §3).
+float full_turns(float a, float b, float side) {
     float way = b - a;
     float turn = way > 4.0 ? -1.0 : way < -4.0 ? 1.0 : 0.0;
     way += 8.0 * turn;

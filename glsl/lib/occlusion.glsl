@@ -1,0 +1,9 @@
+// The image that all views of a light add to, whatever the technique: the weighted share of the light that is occluded.
+
+BUFFER(occlusion);
+
+// A view's word on a pixel; occluded: its weight times the share of the sub-light that is occluded.
+void add_occluded(uint pixel, float occluded) {
+    if (ACCUMULATE) occlusion[pixel] += occluded;
+    else occlusion[pixel] = occluded;
+}

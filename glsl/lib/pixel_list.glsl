@@ -1,0 +1,79 @@
+// A technique over the pixel list: an invocation for each entry, which sums up over the pixel's kernel and in the end says
+// what of the sub-light is hidden. The technique defines two functions, `sum_kernel` and `hidden_share`; the rest is here.
+
+#include "receiver.glsl"
+#include "kernel.glsl"
+#include "contour.glsl"
+#include "map.glsl"
+#include "resume.glsl"
+#include "occlusion.glsl"
+#include "count.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+
+readonly BUFFER(frame);
+readonly BUFFER(views);
+BUFFER(fits);
+readonly BUFFER(kernels);
+readonly BUFFER(lists);
+readonly BUFFER(pixels);
+
+#include "surface.glsl"
+
+// The pixel that this invocation works on.
+struct ListedPixel {
+    uint index;
+    View view;
+    Receiver receiver;
+    // [cell] Its kernel.
+    ivec2 first;
+    ivec2 last;
+};
+
+ListedPixel pixel;
+
+// What the pixel adds up. A technique that adds up something else than one number defines SUM and SUM_WORDS first.
+#ifndef SUM_WORDS
+#define SUM_WORDS 1u
+#endif
+SUM sum[SUM_WORDS];
+
+// Adds up over the pixel's kernel from `from` on (a `Progress` of the function's own making, or all 0 at the beginning), to
+// the end or as far as the budget lasts, and returns where to go on: ENDED if there is nothing left.
+Progress sum_kernel(Progress from);
+
+// [0, 1] Share of the sub-light that is hidden, from a sum over all of the kernel.
+float hidden_share();
+
+ListedPixel listed_pixel(uint index) {
+    View view = views[push.index];
+    SurfacePoint point = surface_at(pixel_at(index));
+    Receiver receiver = project(view, fits[push.index], point.position - view.center, point.normal);
+    return ListedPixel(index, view, receiver, unpacked(kernels[index].first), unpacked(kernels[index].last));
+}
+
+void main() {
+    uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
+    uint entry = group * GROUP_SIZE + gl_LocalInvocationID.x;
+    if (entry >= lists[push.index].pixel_count) return;
+    if (is_finished(entry)) return;
+    pixel = listed_pixel(pixels[entry]);
+    uint first_word = pixel.index * SUM_WORDS;
+    for (uint i = 0u; i < SUM_WORDS; ++i) sum[i] = is_first_round() ? SUM(0) : partial[first_word + i];
+
+    Progress next = sum_kernel(resumed(entry));
+
+    bool complete = next.next == FINISHED;
+    if (complete) {
+        add_occluded(pixel.index, pixel.view.weight * clamp(hidden_share(), 0.0, 1.0));
+    } else if (!is_last_round()) {
+        for (uint i = 0u; i < SUM_WORDS; ++i) partial[first_word + i] = sum[i];
+        reach_pixels(push.level + 1u, group);
+    } else {
+        // There is no further round: the frame fails.
+        atomicAdd(fits[push.index].unfinished, 1u);
+        next = ENDED;
+    }
+    keep_progress(entry, next);
+    if (COUNT) count_work();
+}
