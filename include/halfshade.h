@@ -34,6 +34,8 @@
  * Threads: every function may be called by any thread at any time. Contexts know nothing of each other. Calls on one
  * object wait for one another.
  *
+ * Keys in brackets are publications: docs/references.md.
+ *
  * Units: lengths are in the scene's units, right-handed; the library does not care which way is up. Images begin with
  * the top row.
  */
@@ -124,56 +126,56 @@
 // `shape` of a light: a disc.
 #define HS_LIGHT_DISC 1
 
-// `technique`: packet-based hierarchical contours [Yang 2009], the library's own.
+// `technique`: Packet-based hierarchical contours [Yang09], the library's own.
 #define HS_TECHNIQUE_PACKET_CONTOUR 0
 
-// `technique`: contours pixel by pixel [Guennebaud 2007].
+// `technique`: Contours pixel by pixel [GBP07], as re-implemented in [Yang09].
 #define HS_TECHNIQUE_PIXEL_CONTOUR 1
 
-// `technique`: areas of back-projected texels [Guennebaud 2006].
+// `technique`: Back-projected areas of all texels of the kernel [GBP06].
 #define HS_TECHNIQUE_MICROPATCH 2
 
-// `technique`: the same in a min-max pyramid [Dmitriev 2007].
+// `technique`: The same, found in a min-max pyramid [DU07].
 #define HS_TECHNIQUE_MICROPATCH_HIERARCHICAL 3
 
-// `technique`: light samples covered by microquads [Schwarz 2007].
+// `technique`: Light samples covered by microquads [SS07].
 #define HS_TECHNIQUE_BITMASK 4
 
-// `technique`: several layers of the map [Bavoil 2008].
+// `technique`: Several peeled layers of the shadow map [BCS08].
 #define HS_TECHNIQUE_DEPTH_PEELING 5
 
-// `technique`: percentage-closer soft shadows [Fernando 2005].
+// `technique`: Percentage-closer soft shadows [Fernando05].
 #define HS_TECHNIQUE_PCSS 6
 
-// `technique`: hard shadows [Williams 1978].
+// `technique`: Hard shadows [Williams78].
 #define HS_TECHNIQUE_HARD 7
 
-// `technique`: the mean of many hard shadow maps.
+// `technique`: The mean of many hard shadow maps.
 #define HS_TECHNIQUE_REFERENCE_MAPS 8
 
-// `leaf`: a packet whose pixels disagree is worked off pixel by pixel.
+// `leaf`: A packet whose pixels disagree is worked off pixel by pixel [Yang09 §4.1].
 #define HS_LEAF_REPROCESS 0
 
-// `leaf`: the pixels of a packet compare for themselves.
+// `leaf`: The pixels of a packet compare for themselves; all else is shared.
 #define HS_LEAF_PER_PIXEL 1
 
-// `mapping`: a packet is one invocation.
+// `mapping`: A packet is one invocation, which loops over its pixels [Yang09 alg. 2].
 #define HS_MAPPING_SERIAL 0
 
-// `mapping`: a packet is one invocation for each pixel.
+// `mapping`: A packet is one invocation for each pixel; all walk the same stack.
 #define HS_MAPPING_LANES 1
 
-// `occluders`: the texels of a peeled layer are rectangles.
-#define HS_OCCLUDERS_MICROPATCHES 0
-
-// `occluders`: the texels of a peeled layer have contours.
-#define HS_OCCLUDERS_CONTOURS 1
-
-// `pattern`: the light's samples stand in the middles of their strata.
+// `pattern`: The light's samples stand in the middles of their strata.
 #define HS_PATTERN_REGULAR 0
 
-// `pattern`: they stand anywhere in them, the same for all pixels.
+// `pattern`: They stand anywhere in them, the same for all pixels.
 #define HS_PATTERN_JITTERED 1
+
+// `occluders`: The texels of a peeled layer are rectangles.
+#define HS_OCCLUDERS_MICROPATCHES 0
+
+// `occluders`: The texels of a peeled layer have contours.
+#define HS_OCCLUDERS_CONTOURS 1
 
 // A device and its objects' common ground. Opaque.
 typedef struct hs_context hs_context;

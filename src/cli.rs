@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use halfshade::cpu::reference as ray_tracer;
+use halfshade::reference as ray_tracer;
 use halfshade::shot::{MAX_SIZE, Shot};
 use halfshade::{Error, Result};
 

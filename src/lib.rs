@@ -5,8 +5,6 @@ pub mod c_api;
 pub mod calibrate;
 #[cfg(feature = "cli")]
 pub mod compare;
-#[cfg(feature = "reference")]
-pub mod cpu;
 pub mod error;
 pub mod frame;
 pub mod gpu;
@@ -14,6 +12,8 @@ pub mod gpu;
 pub mod image;
 pub mod number;
 pub mod plan;
+#[cfg(feature = "reference")]
+pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod shared;
@@ -24,4 +24,6 @@ pub mod spread;
 pub mod study;
 pub mod sub_light;
 pub mod technique;
+#[cfg(feature = "reference")]
+pub mod twin;
 pub use error::{Error, Result};

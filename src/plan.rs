@@ -2,6 +2,7 @@
 //! asked for and of the device's limits. What is recorded equals what is planned.
 
 mod camera;
+mod clip;
 mod graph;
 mod host;
 mod light;

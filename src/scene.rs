@@ -9,6 +9,7 @@ pub mod gltf;
 mod light;
 mod material;
 mod notes;
+mod options;
 mod shape;
 mod tree;
 mod triangles;

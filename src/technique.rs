@@ -27,17 +27,17 @@ use crate::scene::AreaLight;
 use crate::sub_light::{self, Part};
 
 pub use choice::Choice;
-pub use knob::{Knob, Row, SweepFlag};
-pub use settings::{KNOBS, Leaf, Mapping, Occluders, Pattern, Settings};
+pub use knob::{Row, SweepFlag};
+pub use settings::{KNOBS, Knob, Leaf, Mapping, Occluders, Pattern, Settings};
 
 /// Registers techniques, in the order of their numbers in the C library: name of the variant, name for people, and what
 /// implements it.
 macro_rules! techniques {
-    ($($(#[$doc:meta])* $variant:ident = $name:literal, $method:path;)+) => {
+    ($($(#[doc = $summary:literal])+ $variant:ident = $name:literal, $method:path;)+) => {
         choice::choice! {
             /// Which publication computes the visibility.
             enum Technique, "technique" {
-                $($(#[$doc])* $variant = $name,)+
+                $($(#[doc = $summary])+ $variant = $name,)+
             }
         }
 
@@ -53,21 +53,21 @@ macro_rules! techniques {
 }
 
 techniques! {
-    /// [Yang09], this engine's own.
+    /// Packet-based hierarchical contours [Yang09], the library's own.
     PacketContour = "packet-contour", packet_contour::PacketContour;
-    /// [GBP07] as re-implemented in [Yang09]: every cell of the kernel, pixel by pixel.
+    /// Contours pixel by pixel [GBP07], as re-implemented in [Yang09].
     PixelContour = "pixel-contour", pixel_contour::PixelContour;
-    /// [GBP06]: the back-projected areas of all texels of the kernel.
+    /// Back-projected areas of all texels of the kernel [GBP06].
     Micropatch = "micropatch", micropatch::Micropatch;
-    /// [DU07]: the same, found in a min-max pyramid.
+    /// The same, found in a min-max pyramid [DU07].
     MicropatchHierarchical = "micropatch-hierarchical", micropatch_hierarchical::MicropatchHierarchical;
-    /// [SS07]: bits of light samples covered by microquads.
+    /// Light samples covered by microquads [SS07].
     Bitmask = "bitmask", bitmask::Bitmask;
-    /// [BCS08]: several peeled layers of the shadow map.
+    /// Several peeled layers of the shadow map [BCS08].
     DepthPeeling = "depth-peeling", depth_peeling::DepthPeeling;
-    /// [Fernando05]: blocker search and percentage-closer filter.
+    /// Percentage-closer soft shadows [Fernando05].
     Pcss = "pcss", pcss::Pcss;
-    /// [Williams78]: nearest sample, or 3×3 of them.
+    /// Hard shadows [Williams78].
     Hard = "hard", hard::Hard;
     /// The mean of many hard shadow maps.
     ReferenceMaps = "reference-maps", reference_maps::ReferenceMaps;

@@ -8,19 +8,19 @@ use std::sync::Arc;
 
 use common::{MAP, Point, SIZE, Traces, points, renderer, shot, traces, with_device};
 use glam::{DVec3, Vec3};
-use halfshade::cpu::classify::{Classified, Decision, classify};
-use halfshade::cpu::contour::ShadowMap;
-use halfshade::cpu::depth::{Receiver, in_view, project};
-use halfshade::cpu::kernels::{kernel_of, unpacked};
-use halfshade::cpu::mssm::Mssm;
-use halfshade::cpu::radial::SubLight;
-use halfshade::cpu::resolve;
 use halfshade::gpu::Gpu;
 use halfshade::render::DEFAULT_COSTS;
 use halfshade::scene::LightShape;
 use halfshade::shared::{KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
 use halfshade::shot::Shot;
 use halfshade::technique::{Leaf, Mapping};
+use halfshade::twin::classify::{Classified, Decision, classify};
+use halfshade::twin::contour::ShadowMap;
+use halfshade::twin::kernels::{kernel_of, unpacked};
+use halfshade::twin::mssm::Mssm;
+use halfshade::twin::radial::SubLight;
+use halfshade::twin::receiver::{Receiver, in_view, project};
+use halfshade::twin::resolve;
 
 /// [visibility] The device sums some hundred areas in f32, each with a rounding error of a few 1e-7 of the
 /// light, and interpolates the sectors of discs.

@@ -3,7 +3,8 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::path::PathBuf;
 
-use super::outcome::{Fault, Outcome};
+use super::call_result::{CallResult, Fault};
+use super::structure::Structure;
 use super::types::HS_OUT_OF_HOST_MEMORY;
 
 /// What every structure begins with.
@@ -15,29 +16,7 @@ struct Head {
     next: *const c_void,
 }
 
-/// A structure of the interface.
-///
-/// # Safety
-/// It is `repr(C)`, begins with `type`, `size` and `next`, and any bytes make a value of it.
-pub unsafe trait Structure: Copy {
-    const TYPE: u32;
-    const NAME: &'static str;
-}
-
-/// Declares which `type` belongs to which structure.
-macro_rules! structures {
-    ($($name:ident = $kind:ident,)*) => {$(
-        // SAFETY: a repr(C) structure of numbers, pointers and arrays of them that begins with a head; the test of
-        // the layouts looks at each.
-        unsafe impl $crate::c_api::check::Structure for $name {
-            const TYPE: u32 = $kind;
-            const NAME: &'static str = stringify!($name);
-        }
-    )*};
-}
-pub(crate) use structures;
-
-fn check<T: Structure>(pointer: *const T) -> Outcome {
+fn check<T: Structure>(pointer: *const T) -> CallResult {
     let name = T::NAME;
     let invalid = |text: String| Err(Fault::invalid(text));
     if pointer.is_null() {
@@ -73,7 +52,7 @@ fn check<T: Structure>(pointer: *const T) -> Outcome {
 ///
 /// # Safety
 /// `pointer` is NULL or points to a structure of at least the `size` that it states.
-pub unsafe fn input<T: Structure>(pointer: *const T) -> Outcome<T> {
+pub unsafe fn input<T: Structure>(pointer: *const T) -> CallResult<T> {
     check(pointer)?;
     // SAFETY: checked, and the caller's promise.
     Ok(unsafe { *pointer })
@@ -83,7 +62,7 @@ pub unsafe fn input<T: Structure>(pointer: *const T) -> Outcome<T> {
 ///
 /// # Safety
 /// As for [`input`].
-pub unsafe fn optional<T: Structure>(pointer: *const T) -> Outcome<Option<T>> {
+pub unsafe fn optional<T: Structure>(pointer: *const T) -> CallResult<Option<T>> {
     match pointer.is_null() {
         true => Ok(None),
         // SAFETY: the caller's promise.
@@ -95,7 +74,7 @@ pub unsafe fn optional<T: Structure>(pointer: *const T) -> Outcome<Option<T>> {
 ///
 /// # Safety
 /// As for [`input`], and nothing else uses it during the call.
-pub unsafe fn output<'a, T: Structure>(pointer: *mut T) -> Outcome<&'a mut T> {
+pub unsafe fn output<'a, T: Structure>(pointer: *mut T) -> CallResult<&'a mut T> {
     check(pointer)?;
     // SAFETY: checked, and the caller's promise.
     Ok(unsafe { &mut *pointer })
@@ -105,13 +84,13 @@ pub unsafe fn output<'a, T: Structure>(pointer: *mut T) -> Outcome<&'a mut T> {
 ///
 /// # Safety
 /// `pointer` is NULL or points to a value that nothing else uses during the call.
-pub unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> Outcome<&'a mut T> {
+pub unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> CallResult<&'a mut T> {
     check_pointer(pointer, 1, name)?;
     // SAFETY: checked, and the caller's promise.
     Ok(unsafe { &mut *pointer })
 }
 
-fn check_pointer<T>(pointer: *const T, count: u64, name: &str) -> Outcome<usize> {
+fn check_pointer<T>(pointer: *const T, count: u64, name: &str) -> CallResult<usize> {
     if count > 0 && pointer.is_null() {
         return Err(Fault::invalid(format!("{name} is NULL")));
     }
@@ -131,7 +110,7 @@ fn check_pointer<T>(pointer: *const T, count: u64, name: &str) -> Outcome<usize>
 ///
 /// # Safety
 /// `pointer` is NULL or points to `count` values, which nothing changes during the call.
-pub unsafe fn slice<'a, T: Copy>(pointer: *const T, count: u64, name: &str) -> Outcome<&'a [T]> {
+pub unsafe fn slice<'a, T: Copy>(pointer: *const T, count: u64, name: &str) -> CallResult<&'a [T]> {
     let count = check_pointer(pointer, count, name)?;
     if count == 0 {
         return Ok(&[]);
@@ -148,7 +127,7 @@ pub unsafe fn structures_of<'a, T: Structure>(
     pointer: *const T,
     count: u64,
     name: &str,
-) -> Outcome<&'a [T]> {
+) -> CallResult<&'a [T]> {
     let count = check_pointer(pointer, count, name)?;
     for index in 0..count {
         // SAFETY: the caller's promise.
@@ -162,7 +141,7 @@ pub unsafe fn structures_of<'a, T: Structure>(
 ///
 /// # Safety
 /// `pointer` is NULL or points to `count` values that nothing else uses during the call.
-pub unsafe fn fill<T: Copy>(pointer: *mut T, count: u64, values: &[T], name: &str) -> Outcome {
+pub unsafe fn fill<T: Copy>(pointer: *mut T, count: u64, values: &[T], name: &str) -> CallResult {
     if count != values.len() as u64 {
         return Err(Fault::invalid(format!(
             "{name} has room for {count} values and must have it for {}",
@@ -176,7 +155,7 @@ pub unsafe fn fill<T: Copy>(pointer: *mut T, count: u64, values: &[T], name: &st
 }
 
 /// A copy that fails instead of aborting where memory runs out.
-pub fn collected<T>(values: impl ExactSizeIterator<Item = T>, name: &str) -> Outcome<Vec<T>> {
+pub fn collected<T>(values: impl ExactSizeIterator<Item = T>, name: &str) -> CallResult<Vec<T>> {
     let mut list = Vec::new();
     list.try_reserve_exact(values.len()).map_err(|_| {
         Fault::new(
@@ -192,7 +171,7 @@ pub fn collected<T>(values: impl ExactSizeIterator<Item = T>, name: &str) -> Out
 ///
 /// # Safety
 /// `pointer` is NULL or points to bytes that end with a NUL.
-pub unsafe fn text(pointer: *const c_char, name: &str) -> Outcome<Option<String>> {
+pub unsafe fn text(pointer: *const c_char, name: &str) -> CallResult<Option<String>> {
     if pointer.is_null() {
         return Ok(None);
     }
@@ -208,7 +187,7 @@ pub unsafe fn text(pointer: *const c_char, name: &str) -> Outcome<Option<String>
 ///
 /// # Safety
 /// As for [`text`].
-pub unsafe fn path(pointer: *const c_char, name: &str) -> Outcome<PathBuf> {
+pub unsafe fn path(pointer: *const c_char, name: &str) -> CallResult<PathBuf> {
     // SAFETY: the caller's promise.
     match unsafe { text(pointer, name) }? {
         Some(text) => Ok(text.into()),
@@ -229,7 +208,7 @@ pub fn write_text(target: &mut [c_char], text: &str) {
 }
 
 /// Whether a number that stands for yes or no is one.
-pub fn flag(value: u32, name: &str) -> Outcome<bool> {
+pub fn flag(value: u32, name: &str) -> CallResult<bool> {
     match value {
         0 => Ok(false),
         1 => Ok(true),

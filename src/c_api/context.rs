@@ -5,11 +5,10 @@ use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use super::check::{optional, place, text};
-use super::handles::CONTEXTS;
-use super::outcome::{Fault, Outcome, call};
+use super::call_result::{CallResult, Fault};
+use super::handles::Registry;
 use super::types::*;
-use crate::gpu::{Gpu, Options};
+use crate::gpu::Gpu;
 
 /// What everything that a caller creates lives in.
 pub struct Context {
@@ -20,6 +19,9 @@ pub struct Context {
     sentence: Mutex<String>,
     lost: AtomicBool,
 }
+
+/// All living contexts.
+pub static CONTEXTS: Registry<hs_context, Context> = Registry::new("context");
 
 /// Where messages go.
 #[derive(Clone, Copy)]
@@ -65,13 +67,21 @@ impl Context {
         Arc::new(Self::new(None, Log::NONE))
     }
 
-    pub fn gpu(&self) -> Outcome<&Arc<Gpu>> {
+    pub fn gpu(&self) -> CallResult<&Arc<Gpu>> {
         self.gpu.as_ref().ok_or_else(|| {
             Fault::new(
                 HS_UNSUPPORTED,
                 "the context was created without a device; leave HS_CONTEXT_WITHOUT_DEVICE out",
             )
         })
+    }
+
+    /// How many warnings and errors the validation layer has given.
+    pub fn message_count(&self) -> u64 {
+        match self.messages.lock() {
+            Ok(said) => said.len() as u64,
+            Err(_) => 0,
+        }
     }
 
     pub fn is_lost(&self) -> bool {
@@ -115,94 +125,29 @@ impl Drop for Context {
     }
 }
 
-/// Creates a context with a device of its own. `info` may be NULL: the best device, no log. On failure `*context`
-/// is NULL and the sentence is this thread's: hs_last_error(NULL, ...).
-///
-/// Any thread; contexts know nothing of each other.
-///
-/// # Safety
-/// `info` is NULL or points to a structure whose texts end with a NUL, `context` to a pointer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hs_context_create(
-    info: *const hs_context_info,
-    context: *mut *mut hs_context,
-) -> hs_result {
-    call(|_| {
-        // SAFETY: the caller's promise, here and below.
-        let target = unsafe { place(context, "the pointer to the context") }?;
-        *target = std::ptr::null_mut();
-        let created = match unsafe { optional(info) }? {
-            None => Context::new(Some(Gpu::open(&Options::default())?), Log::NONE),
-            Some(info) => unsafe { create(&info) }?,
-        };
-        *target = CONTEXTS.add(created)?;
-        Ok(())
-    })
+/// An object that lives in a context.
+pub struct Held<T> {
+    // Before the context, which it needs while it goes.
+    value: Mutex<T>,
+    pub context: Arc<Context>,
 }
 
-/// # Safety
-/// The texts end with a NUL.
-unsafe fn create(info: &hs_context_info) -> Outcome<Context> {
-    let known = HS_CONTEXT_VALIDATE | HS_CONTEXT_WITHOUT_DEVICE;
-    if info.flags & !known != 0 || info.reserved != 0 {
-        return Err(Fault::invalid(
-            "hs_context_info: flags has unknown bits, or reserved is not 0",
-        ));
+impl<T> Held<T> {
+    pub fn new(context: &Arc<Context>, value: T) -> Self {
+        Self {
+            value: Mutex::new(value),
+            context: context.clone(),
+        }
     }
-    // SAFETY: the caller's promise.
-    let (device, cache_folder) = unsafe {
-        (
-            text(info.device, "device")?,
-            text(info.cache_folder, "cache_folder")?,
-        )
-    };
-    let log = Log {
-        callback: info.log,
-        user: info.log_user,
-    };
-    let options = Options {
-        device,
-        validate: info.flags & HS_CONTEXT_VALIDATE != 0,
-        cache_folder: cache_folder.map(Into::into),
-        max_memory: (info.max_memory > 0).then_some(info.max_memory),
-        ..Options::default()
-    };
-    let gpu = match info.flags & HS_CONTEXT_WITHOUT_DEVICE {
-        0 => Some(Gpu::open(&options)?),
-        _ => None,
-    };
-    Ok(Context::new(gpu, log))
-}
 
-/// Lets go of a context; NULL is fine. What was created in it keeps it until it is destroyed itself, so any order
-/// of destruction is right. A handle that was destroyed before is ignored.
-///
-/// Any thread. Other threads' calls on the context finish.
-#[unsafe(no_mangle)]
-pub extern "C" fn hs_context_destroy(context: *mut hs_context) {
-    CONTEXTS.remove(context);
-}
-
-/// How many warnings and errors the validation layer has given so far; 0 without HS_CONTEXT_VALIDATE. Their texts
-/// go to the log when the context ends.
-///
-/// Any thread.
-///
-/// # Safety
-/// `count` points to a number.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hs_context_validation_messages(
-    context: *const hs_context,
-    count: *mut u64,
-) -> hs_result {
-    call(|scope| {
-        // SAFETY: the caller's promise.
-        let target = unsafe { place(count, "count") }?;
-        let context = CONTEXTS.enter(scope, context)?;
-        *target = match context.messages.lock() {
-            Ok(said) => said.len() as u64,
-            Err(_) => 0,
-        };
-        Ok(())
-    })
+    /// Runs `work` on the object, one call at a time.
+    pub fn with<R>(&self, work: impl FnOnce(&mut T) -> CallResult<R>) -> CallResult<R> {
+        let mut value = self.value.lock().map_err(|_| {
+            Fault::new(
+                HS_INTERNAL,
+                "an earlier call on this object ended in an error of the library; destroy it",
+            )
+        })?;
+        work(&mut value)
+    }
 }

@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Vec3};
 
-use super::outcome::{Fault, Outcome};
+use super::call_result::{CallResult, Fault};
 use super::types::*;
 use crate::scene::{AreaLight, Camera, LightShape};
 use crate::technique::{KNOBS, Knob, Settings, Technique};
 
 /// The value that a number stands for.
-pub fn choice<T: Copy>(list: &[T], number: u32, name: &str) -> Outcome<T> {
+pub fn choice<T: Copy>(list: &[T], number: u32, name: &str) -> CallResult<T> {
     list.get(number as usize).copied().ok_or_else(|| {
         Fault::invalid(format!(
             "{name} is 0 to {}, not {number}",
@@ -17,12 +17,12 @@ pub fn choice<T: Copy>(list: &[T], number: u32, name: &str) -> Outcome<T> {
     })
 }
 
-pub fn technique(number: u32) -> Outcome<Technique> {
+pub fn technique(number: u32) -> CallResult<Technique> {
     choice(Technique::ALL, number, "technique")
 }
 
 /// A field that is there for later versions.
-pub fn reserved(value: u32) -> Outcome {
+pub fn reserved(value: u32) -> CallResult {
     match value {
         0 => Ok(()),
         _ => Err(Fault::invalid("a reserved field is not 0")),
@@ -56,7 +56,7 @@ macro_rules! knob_fields {
     };
 }
 
-pub fn settings(given: &hs_settings) -> Outcome<Settings> {
+pub fn settings(given: &hs_settings) -> CallResult<Settings> {
     let mut settings = Settings {
         packet: (given.packet_width, given.packet_height),
         bias: (given.bias != USUAL_BIAS).then_some(given.bias),
@@ -76,7 +76,7 @@ pub fn settings(given: &hs_settings) -> Outcome<Settings> {
 const USUAL_BIAS: f32 = -1.0;
 
 /// Fills all but the head.
-pub fn write_settings(target: &mut hs_settings, settings: &Settings) -> Outcome {
+pub fn write_settings(target: &mut hs_settings, settings: &Settings) -> CallResult {
     (target.packet_width, target.packet_height) = settings.packet;
     target.bias = settings.bias.unwrap_or(USUAL_BIAS);
     macro_rules! write {
@@ -89,12 +89,12 @@ pub fn write_settings(target: &mut hs_settings, settings: &Settings) -> Outcome 
 }
 
 /// The knob of a field.
-fn knob(field: &str) -> Outcome<&'static Knob> {
+fn knob(field: &str) -> CallResult<&'static Knob> {
     let found = KNOBS.iter().find(|knob| knob.field == field);
     found.ok_or_else(|| Fault::invalid(format!("there is no knob {field}")))
 }
 
-pub fn camera(given: &hs_camera) -> Outcome<Camera> {
+pub fn camera(given: &hs_camera) -> CallResult<Camera> {
     let camera = Camera {
         name: String::new(),
         eye: DVec3::from_array(given.eye),
@@ -109,7 +109,7 @@ pub fn camera(given: &hs_camera) -> Outcome<Camera> {
 }
 
 /// A light; takes no memory.
-pub fn light(given: &hs_light) -> Outcome<AreaLight> {
+pub fn light(given: &hs_light) -> CallResult<AreaLight> {
     reserved(given.reserved)?;
     let shape = match given.shape {
         HS_LIGHT_RECT => LightShape::Rect {

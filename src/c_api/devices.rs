@@ -2,9 +2,10 @@
 
 use std::ffi::{CStr, c_char};
 
+use super::call::call;
+use super::call_result::Fault;
 use super::check::{output, place, write_text};
-use super::handles::CONTEXTS;
-use super::outcome::{Fault, call};
+use super::context::CONTEXTS;
 use super::types::*;
 use crate::gpu::{DeviceInfo, list_devices};
 

@@ -2,11 +2,12 @@
 
 use std::sync::atomic::AtomicBool;
 
+use super::call::call;
+use super::call_result::Fault;
 use super::check::{fill, input};
-use super::handles::SHOTS;
-use super::outcome::{Fault, call};
+use super::shot::SHOTS;
 use super::types::*;
-use crate::cpu::reference::{ReferenceOptions, trace};
+use crate::reference::{ReferenceOptions, trace};
 
 /// Traces the true visibility of a light with rays, on all processors; needs no device. Each array takes `count` =
 /// width * height values, row by row from the top, NaN where the pixel sees no surface; any of them may be NULL.

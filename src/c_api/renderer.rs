@@ -1,9 +1,12 @@
 //! Renderers of the standalone tier.
 
+use super::call::call;
+use super::call_result::{CallResult, Fault};
 use super::check::{fill, flag, optional, output, place, write_text};
+use super::context::Held;
 use super::convert::reserved;
-use super::handles::{Held, RENDERERS, SHOTS};
-use super::outcome::{Fault, Outcome, call};
+use super::handles::Registry;
+use super::shot::SHOTS;
 use super::types::*;
 use crate::plan::Outputs;
 use crate::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, Frame, RenderOptions, Renderer};
@@ -16,7 +19,7 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    fn frame(&self) -> Outcome<&Frame> {
+    fn frame(&self) -> CallResult<&Frame> {
         self.frame.as_ref().ok_or_else(|| {
             Fault::new(
                 HS_NOT_READY,
@@ -25,6 +28,9 @@ impl Rendering {
         })
     }
 }
+
+/// All living renderers.
+pub static RENDERERS: Registry<hs_renderer, Held<Rendering>> = Registry::new("renderer");
 
 /// Makes a renderer for a shot as it is now: all memory, all pipelines. `info` may be NULL: visibility alone. It takes
 /// seconds where the driver has to compile the pipelines first. On failure `*renderer` is NULL.
@@ -57,7 +63,7 @@ pub unsafe extern "C" fn hs_renderer_create(
     })
 }
 
-fn options(info: Option<hs_renderer_info>) -> Outcome<RenderOptions> {
+fn options(info: Option<hs_renderer_info>) -> CallResult<RenderOptions> {
     let mut options = RenderOptions {
         outputs: Outputs { picture: false },
         costs: DEFAULT_COSTS,
@@ -231,6 +237,6 @@ pub unsafe extern "C" fn hs_renderer_pass(
 }
 
 /// Runs `work` on a renderer.
-fn with(renderer: *mut hs_renderer, work: impl FnOnce(&mut Rendering) -> Outcome) -> hs_result {
+fn with(renderer: *mut hs_renderer, work: impl FnOnce(&mut Rendering) -> CallResult) -> hs_result {
     call(|scope| RENDERERS.enter(scope, renderer)?.with(work))
 }

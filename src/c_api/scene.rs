@@ -5,13 +5,18 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
+use super::call::call;
+use super::call_result::{CallResult, Fault};
 use super::check::{collected, flag, input, output, path, place, slice, structures_of};
+use super::context::{CONTEXTS, Held};
 use super::convert::{choice, reserved};
-use super::handles::{CONTEXTS, Held, SCENES};
-use super::outcome::{Fault, Outcome, call};
+use super::handles::Registry;
 use super::types::*;
 use crate::scene::gltf::{self, LoadOptions};
 use crate::scene::{Material, Scene, Texture, Triangles, Wrap};
+
+/// All living scenes.
+pub static SCENES: Registry<hs_scene, Held<Arc<Scene>>> = Registry::new("scene");
 
 /// Builds a scene from arrays, which are copied. On failure `*scene` is NULL.
 ///
@@ -104,7 +109,7 @@ pub unsafe extern "C" fn hs_scene_describe(
 
 /// # Safety
 /// The arrays have the stated numbers of elements.
-unsafe fn build(info: &hs_scene_info) -> Outcome<Scene> {
+unsafe fn build(info: &hs_scene_info) -> CallResult<Scene> {
     // SAFETY: the caller's promise, here and below.
     let floats = |pointer: *const f32, each: u64, name| {
         let count = info.vertex_count.saturating_mul(each);
@@ -174,7 +179,7 @@ const MAX_TEXELS: u64 = 1 << 28;
 
 /// # Safety
 /// The array has the stated number of elements.
-unsafe fn materials(info: &hs_scene_info) -> Outcome<Vec<Material>> {
+unsafe fn materials(info: &hs_scene_info) -> CallResult<Vec<Material>> {
     // SAFETY: the caller's promise.
     let given = unsafe { structures_of(info.materials, info.material_count, "materials") }?;
     let materials = given.iter().enumerate().map(|(index, given)| {
@@ -192,7 +197,7 @@ unsafe fn materials(info: &hs_scene_info) -> Outcome<Vec<Material>> {
 
 /// # Safety
 /// The arrays have the stated numbers of elements.
-unsafe fn textures(info: &hs_scene_info) -> Outcome<Vec<Texture>> {
+unsafe fn textures(info: &hs_scene_info) -> CallResult<Vec<Texture>> {
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
     // SAFETY: the caller's promise, here and below.
     let given = unsafe { structures_of(info.textures, info.texture_count, "textures") }?;

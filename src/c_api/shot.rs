@@ -3,10 +3,13 @@
 use std::ffi::c_char;
 use std::sync::Arc;
 
+use super::call::call;
+use super::call_result::{CallResult, Fault};
 use super::check::{input, output, path, place, structures_of};
+use super::context::{CONTEXTS, Held};
 use super::convert;
-use super::handles::{CONTEXTS, Held, SCENES, SHOTS};
-use super::outcome::{Fault, Outcome, call};
+use super::handles::Registry;
+use super::scene::SCENES;
 use super::types::*;
 use crate::scene::{Camera, Scene};
 use crate::shot::{Overrides, Shot};
@@ -14,6 +17,9 @@ use crate::technique::Settings;
 
 /// [pixel] Width and height of the image of a shot whose camera was not set.
 const SIZE: u32 = 512;
+
+/// All living shots.
+pub static SHOTS: Registry<hs_shot, Held<Shot>> = Registry::new("shot");
 
 /// Makes a shot of a scene, with the scene's own first camera, if it has one, and its own lights, an image of
 /// 512 x 512 pixels, and the usual settings of HS_TECHNIQUE_PACKET_CONTOUR. On failure `*shot` is NULL.
@@ -98,7 +104,7 @@ pub extern "C" fn hs_shot_destroy(shot: *mut hs_shot) {
 }
 
 /// Changes a shot, or leaves it as it was where the change makes no sense.
-fn change(shot: *mut hs_shot, work: impl FnOnce(&mut Shot) -> Outcome) -> hs_result {
+fn change(shot: *mut hs_shot, work: impl FnOnce(&mut Shot) -> CallResult) -> hs_result {
     call(|scope| SHOTS.enter(scope, shot)?.with(work))
 }
 
@@ -153,7 +159,10 @@ pub unsafe extern "C" fn hs_shot_set_lights(
         }
         // SAFETY: the caller's promise.
         let given = unsafe { structures_of(lights, count, "lights") }?;
-        shot.lights = given.iter().map(convert::light).collect::<Outcome<_>>()?;
+        shot.lights = given
+            .iter()
+            .map(convert::light)
+            .collect::<CallResult<_>>()?;
         Ok(())
     })
 }

@@ -2,44 +2,8 @@
 
 use std::ffi::{c_char, c_void};
 
-use super::check::structures;
-use super::types::*;
-
-/// `technique`: packet-based hierarchical contours [Yang 2009], the library's own.
-pub const HS_TECHNIQUE_PACKET_CONTOUR: u32 = 0;
-/// `technique`: contours pixel by pixel [Guennebaud 2007].
-pub const HS_TECHNIQUE_PIXEL_CONTOUR: u32 = 1;
-/// `technique`: areas of back-projected texels [Guennebaud 2006].
-pub const HS_TECHNIQUE_MICROPATCH: u32 = 2;
-/// `technique`: the same in a min-max pyramid [Dmitriev 2007].
-pub const HS_TECHNIQUE_MICROPATCH_HIERARCHICAL: u32 = 3;
-/// `technique`: light samples covered by microquads [Schwarz 2007].
-pub const HS_TECHNIQUE_BITMASK: u32 = 4;
-/// `technique`: several layers of the map [Bavoil 2008].
-pub const HS_TECHNIQUE_DEPTH_PEELING: u32 = 5;
-/// `technique`: percentage-closer soft shadows [Fernando 2005].
-pub const HS_TECHNIQUE_PCSS: u32 = 6;
-/// `technique`: hard shadows [Williams 1978].
-pub const HS_TECHNIQUE_HARD: u32 = 7;
-/// `technique`: the mean of many hard shadow maps.
-pub const HS_TECHNIQUE_REFERENCE_MAPS: u32 = 8;
-
-/// `leaf`: a packet whose pixels disagree is worked off pixel by pixel.
-pub const HS_LEAF_REPROCESS: u32 = 0;
-/// `leaf`: the pixels of a packet compare for themselves.
-pub const HS_LEAF_PER_PIXEL: u32 = 1;
-/// `mapping`: a packet is one invocation.
-pub const HS_MAPPING_SERIAL: u32 = 0;
-/// `mapping`: a packet is one invocation for each pixel.
-pub const HS_MAPPING_LANES: u32 = 1;
-/// `occluders`: the texels of a peeled layer are rectangles.
-pub const HS_OCCLUDERS_MICROPATCHES: u32 = 0;
-/// `occluders`: the texels of a peeled layer have contours.
-pub const HS_OCCLUDERS_CONTOURS: u32 = 1;
-/// `pattern`: the light's samples stand in the middles of their strata.
-pub const HS_PATTERN_REGULAR: u32 = 0;
-/// `pattern`: they stand anywhere in them, the same for all pixels.
-pub const HS_PATTERN_JITTERED: u32 = 1;
+use super::structure::structures;
+use super::types_context::*;
 
 /// The knobs of a technique; hs_settings_default fills them all.
 #[repr(C)]

@@ -2,8 +2,8 @@
 
 use std::ffi::c_void;
 
-use super::check::structures;
-use super::types::*;
+use super::structure::structures;
+use super::types_context::*;
 
 /// `texture` of a material without one.
 pub const HS_NO_TEXTURE: u32 = 0xffff_ffff;

@@ -4,10 +4,11 @@ use std::ffi::{CStr, c_char};
 
 use ash::vk;
 
+use super::call::call;
+use super::call_result::{CallResult, Fault};
 use super::check::{input, output, place, slice, write_text};
+use super::context::CONTEXTS;
 use super::context::{Context, Log};
-use super::handles::CONTEXTS;
-use super::outcome::{Fault, Outcome, call};
 use super::types::*;
 use super::vulkan_features::{enabled, require};
 use super::vulkan_names::*;
@@ -71,7 +72,7 @@ fn check_handles(
     instance: VkInstance,
     physical: VkPhysicalDevice,
     get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
-) -> Outcome<vk::PFN_vkGetInstanceProcAddr> {
+) -> CallResult<vk::PFN_vkGetInstanceProcAddr> {
     match get_instance_proc_addr {
         Some(function)
             if instance != vk::Instance::null() && physical != vk::PhysicalDevice::null() =>
@@ -136,7 +137,7 @@ pub unsafe extern "C" fn hs_vk_context_create(
 ///
 /// # Safety
 /// `extensions` has the stated number of elements, each a text with a NUL at its end.
-unsafe fn names(info: &hs_vk_device_info, extension: &CStr) -> Outcome<bool> {
+unsafe fn names(info: &hs_vk_device_info, extension: &CStr) -> CallResult<bool> {
     /// More than any device has.
     const MOST: u64 = 65536;
     if info.extension_count > MOST {
@@ -159,7 +160,7 @@ unsafe fn names(info: &hs_vk_device_info, extension: &CStr) -> Outcome<bool> {
 /// `allocator` is NULL or points to Vulkan's structure.
 unsafe fn callbacks(
     allocator: *const VkAllocationCallbacks,
-) -> Outcome<Option<VkAllocationCallbacks>> {
+) -> CallResult<Option<VkAllocationCallbacks>> {
     if allocator.is_null() {
         return Ok(None);
     }

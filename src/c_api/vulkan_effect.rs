@@ -1,11 +1,14 @@
 //! Effects in a host's frames.
 
+use super::call::call;
+use super::call_result::{CallResult, Fault};
 use super::check::{flag, input, optional, output, place, structures_of};
+use super::context::{CONTEXTS, Held};
 use super::convert::{self, choice, reserved};
-use super::handles::{CONTEXTS, EFFECTS, Held};
-use super::outcome::{Fault, Outcome, call};
+use super::handles::Registry;
 use super::types::*;
-use super::vulkan_frame::record;
+use super::vulkan_frame::{Frames, record};
+use super::vulkan_frame_types::*;
 use super::vulkan_lend::{mesh_of, slot_of};
 use super::vulkan_names::*;
 use super::vulkan_types::*;
@@ -15,12 +18,8 @@ use crate::render::{DEFAULT_COSTS, Effect};
 use crate::shared::{Costs, NORMAL_OCTAHEDRAL, NORMAL_SIGNED, NORMAL_UNSIGNED, Projection};
 use crate::technique::{Settings, Technique};
 
-/// An effect, and what its frames have in common.
-pub struct Frames {
-    pub effect: Effect,
-    /// One of `shared::NORMAL_…`.
-    pub normals: u32,
-}
+/// All living effects.
+pub static EFFECTS: Registry<hs_vk_effect, Held<Frames>> = Registry::new("effect");
 
 /// Creates an effect on the context of hs_vk_context_create. It checks and plans, and takes hardly any memory; that is
 /// for hs_vk_effect_prepare. HS_UNSUPPORTED when the device's limits do not allow it. On failure `*effect` is NULL.
@@ -109,9 +108,9 @@ pub unsafe extern "C" fn hs_vk_effect_prepare(
         let info = unsafe { input(info) }?;
         let slots = unsafe { structures_of(info.slots, info.slot_count, "slots") }?;
         let slots = (slots.iter()).map(|slot| unsafe { slot_of(slot) });
-        let slots = slots.collect::<Outcome<Vec<_>>>()?;
+        let slots = slots.collect::<CallResult<Vec<_>>>()?;
         let meshes = unsafe { structures_of(info.meshes, info.mesh_count, "meshes") }?;
-        let meshes = meshes.iter().map(mesh_of).collect::<Outcome<Vec<_>>>()?;
+        let meshes = meshes.iter().map(mesh_of).collect::<CallResult<Vec<_>>>()?;
         unsafe { frames.effect.prepare(&slots, &meshes) }?;
         Ok(())
     })
@@ -181,14 +180,6 @@ pub unsafe extern "C" fn hs_vk_effect_describe(
 }
 
 /// Runs `work` on an effect.
-fn with(effect: *mut hs_vk_effect, work: impl FnOnce(&mut Frames) -> Outcome) -> hs_result {
+fn with(effect: *mut hs_vk_effect, work: impl FnOnce(&mut Frames) -> CallResult) -> hs_result {
     call(|scope| EFFECTS.enter(scope, effect)?.with(work))
-}
-
-/// What is not prepared cannot be recorded.
-pub fn not_ready() -> Fault {
-    Fault::new(
-        HS_NOT_READY,
-        "nothing is prepared yet; call hs_vk_effect_prepare first",
-    )
 }

@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::outcome::{Fault, Outcome};
+use super::call_result::{CallResult, Fault};
 use super::vulkan_names::VkPhysicalDeviceFeatures2;
 use crate::gpu::Enabled;
 
@@ -18,7 +18,7 @@ struct Places {
 impl Places {
     /// # Safety
     /// The chain is one of Vulkan's structures, each as its type says.
-    unsafe fn find(features: *mut VkPhysicalDeviceFeatures2) -> Outcome<Self> {
+    unsafe fn find(features: *mut VkPhysicalDeviceFeatures2) -> CallResult<Self> {
         if features.is_null() || !features.is_aligned() {
             return Err(Fault::invalid("features is NULL or not aligned"));
         }
@@ -98,7 +98,7 @@ impl Places {
 ///
 /// # Safety
 /// `features` is NULL or a chain of Vulkan's structures, each as its type says.
-pub unsafe fn enabled(features: *const VkPhysicalDeviceFeatures2) -> Outcome<Enabled> {
+pub unsafe fn enabled(features: *const VkPhysicalDeviceFeatures2) -> CallResult<Enabled> {
     // SAFETY: the caller's promise; nothing is written.
     let places = unsafe { Places::find(features.cast_mut()) }?;
     // SAFETY: null, or a field of a structure of the chain.
@@ -116,7 +116,7 @@ pub unsafe fn enabled(features: *const VkPhysicalDeviceFeatures2) -> Outcome<Ena
 ///
 /// # Safety
 /// As for [`enabled`], and nothing else uses the chain during the call.
-pub unsafe fn require(features: *mut VkPhysicalDeviceFeatures2) -> Outcome {
+pub unsafe fn require(features: *mut VkPhysicalDeviceFeatures2) -> CallResult {
     // SAFETY: the caller's promise.
     let places = unsafe { Places::find(features) }?.all();
     if places.iter().any(|place| place.is_null()) {

@@ -2,12 +2,20 @@
 
 use ash::vk;
 
-use super::check::{Structure, input, structures_of};
+use super::call_result::{CallResult, Fault};
+use super::check::{input, structures_of};
 use super::convert::{self, reserved};
-use super::outcome::{Fault, Outcome};
-use super::vulkan_effect::{Frames, not_ready};
-use super::vulkan_types::*;
-use crate::render::{DrawnView, FrameInput, GivenMap, MeshInstance};
+use super::structure::Structure;
+use super::types::HS_NOT_READY;
+use super::vulkan_frame_types::*;
+use crate::render::{DrawnView, Effect, FrameInput, GivenMap, MeshInstance};
+
+/// An effect, and what its frames have in common.
+pub struct Frames {
+    pub effect: Effect,
+    /// One of `shared::NORMAL_…`.
+    pub normals: u32,
+}
 
 /// Records a frame; takes no memory unless it fails.
 ///
@@ -17,7 +25,7 @@ pub unsafe fn record(
     frames: &mut Frames,
     commands: vk::CommandBuffer,
     frame: &hs_vk_frame,
-) -> Outcome {
+) -> CallResult {
     if commands == vk::CommandBuffer::null() {
         return Err(Fault::invalid("the command buffer is NULL"));
     }
@@ -81,4 +89,12 @@ fn instance_of(given: &hs_vk_instance) -> MeshInstance {
         mesh: given.mesh as usize,
         transform: [0, 4, 8].map(|at| [0, 1, 2, 3].map(|column| given.transform[at + column])),
     }
+}
+
+/// What is not prepared cannot be recorded.
+pub fn not_ready() -> Fault {
+    Fault::new(
+        HS_NOT_READY,
+        "nothing is prepared yet; call hs_vk_effect_prepare first",
+    )
 }

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use super::check::structures;
+use super::structure::structures;
 use super::types::*;
 use super::vulkan_names::*;
 use super::vulkan_types::*;

@@ -2,9 +2,9 @@
 
 use ash::vk;
 
+use super::call_result::{CallResult, Fault};
 use super::check::{input, structures_of};
-use super::outcome::{Fault, Outcome};
-use super::vulkan_types::*;
+use super::vulkan_frame_types::*;
 use crate::gpu::{HostImageInfo, ImageState};
 use crate::render::{Mesh, SlotImages};
 
@@ -12,7 +12,7 @@ fn image_of(
     given: &hs_vk_image,
     needed: vk::ImageUsageFlags,
     name: &str,
-) -> Outcome<HostImageInfo> {
+) -> CallResult<HostImageInfo> {
     if given.image == vk::Image::null() {
         return Err(Fault::invalid(format!("{name}: the image is NULL")));
     }
@@ -61,7 +61,7 @@ fn image_of(
 
 /// # Safety
 /// The slot's pointers are as it says.
-pub unsafe fn slot_of(given: &hs_vk_slot) -> Outcome<SlotImages> {
+pub unsafe fn slot_of(given: &hs_vk_slot) -> CallResult<SlotImages> {
     let sampled = vk::ImageUsageFlags::SAMPLED;
     // SAFETY: the caller's promise, here and below.
     let (surface, normal, visibility) = unsafe {
@@ -82,11 +82,11 @@ pub unsafe fn slot_of(given: &hs_vk_slot) -> Outcome<SlotImages> {
         )?,
         casters: (maps.iter())
             .map(|map| image_of(map, sampled, "map"))
-            .collect::<Outcome<_>>()?,
+            .collect::<CallResult<_>>()?,
     })
 }
 
-pub fn mesh_of(given: &hs_vk_mesh) -> Outcome<Mesh> {
+pub fn mesh_of(given: &hs_vk_mesh) -> CallResult<Mesh> {
     let index_bytes = match given.index_type {
         vk::IndexType::UINT16 => 2,
         vk::IndexType::UINT32 => 4,

@@ -2,9 +2,8 @@
 
 use std::ffi::{c_char, c_void};
 
-use super::check::structures;
+use super::structure::structures;
 use super::types::*;
-pub use super::vulkan_frame_types::*;
 use super::vulkan_names::*;
 
 /// `type` of hs_vk_requirements.

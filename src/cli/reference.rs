@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use halfshade::cpu::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
 use halfshade::image::{check_writable, write_exr};
 use halfshade::number::sum;
+use halfshade::reference::{BATCHES, ReferenceImage, ReferenceOptions, trace};
 use halfshade::scene::AreaLight;
 use halfshade::shot::Shot;
 use halfshade::{Error, Result};

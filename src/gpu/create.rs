@@ -4,7 +4,7 @@ use ash::vk;
 use gpu_allocator::AllocationSizes;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
-use super::device::failed;
+use super::failed::failed;
 use super::requirements::Features;
 use crate::error::{Error, Result};
 

@@ -4,6 +4,7 @@ use ash::vk;
 
 use super::memory::Buffer;
 use super::pass::Bound;
+use super::target::Target;
 use crate::shared::Push;
 
 /// What to draw.
@@ -15,15 +16,6 @@ pub enum Draw<'a> {
         indices: &'a Buffer,
         command: (&'a Buffer, u64),
     },
-}
-
-/// An image that can be drawn to.
-#[derive(Clone, Copy)]
-pub struct Target {
-    pub(super) view: vk::ImageView,
-    pub(super) layout: vk::ImageLayout,
-    /// [texel] Width and height of the image, or of the part of it at its first texel that is drawn to.
-    pub size: (u32, u32),
 }
 
 /// What is drawn to, all of the same size. Colours are cleared to zero and depth to 0, the far end.

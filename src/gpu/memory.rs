@@ -6,14 +6,14 @@ use ash::vk;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use gpu_allocator::{AllocationError, MemoryLocation};
 
-use super::device::{Gpu, failed};
-use super::draw::Target;
-use super::recorder::Recorder;
+use super::device::Gpu;
+use super::failed::failed;
+use super::target::Target;
 use crate::error::{Error, Result};
 
 /// A buffer that shaders read and write, that indirect commands read, and that can be copied.
 pub struct Buffer {
-    gpu: Arc<Gpu>,
+    pub(super) gpu: Arc<Gpu>,
     pub name: String,
     /// [byte]
     pub bytes: u64,
@@ -111,44 +111,17 @@ impl Buffer {
         Self::at(gpu, name, bytes, MemoryLocation::GpuToCpu)
     }
 
-    /// A buffer that holds `data`: on the device, for which it waits, or, where only a host can submit the copy,
-    /// in memory that both see.
-    pub fn with_data<T: bytemuck::Pod>(gpu: &Arc<Gpu>, name: &str, data: &[T]) -> Result<Self> {
-        let bytes: &[u8] = bytemuck::cast_slice(data);
-        if gpu.has_queue() {
-            let buffer = Self::new(gpu, name, bytes.len() as u64)?;
-            buffer.upload(data)?;
-            return Ok(buffer);
-        }
-        let mut buffer = Self::at(gpu, name, bytes.len() as u64, MemoryLocation::CpuToGpu)?;
-        buffer.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
-        Ok(buffer)
-    }
-
     /// The raw buffer, for hosts that bind it themselves.
     pub fn raw(&self) -> vk::Buffer {
         self.raw
     }
 
-    /// Replaces what a buffer on the device holds by `data` of the same size. Waits for the copy; nothing
-    /// that reads the buffer may be under way.
-    pub fn upload<T: bytemuck::Pod>(&self, data: &[T]) -> Result<()> {
-        let bytes: &[u8] = bytemuck::cast_slice(data);
-        if bytes.is_empty() {
-            return Ok(());
-        }
-        let name = format!("{} (staging)", self.name);
-        let size = bytes.len() as u64;
-        let mut staging = Self::at(&self.gpu, &name, size, MemoryLocation::CpuToGpu)?;
-        staging.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
-        let mut recorder = Recorder::new(&self.gpu, 0)?;
-        recorder.begin()?;
-        recorder.commands().copy_buffer("upload", &staging, self);
-        recorder.submit_and_wait()?;
-        Ok(())
-    }
-
-    fn at(gpu: &Arc<Gpu>, name: &str, bytes: u64, location: MemoryLocation) -> Result<Self> {
+    pub(super) fn at(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        bytes: u64,
+        location: MemoryLocation,
+    ) -> Result<Self> {
         // Vulkan knows no empty buffers, and shaders must bind something.
         let bytes = bytes.max(16);
         let info = vk::BufferCreateInfo::default().size(bytes).usage(
@@ -185,7 +158,7 @@ impl Buffer {
         }
     }
 
-    fn mapped_mut(&mut self) -> Result<&mut [u8]> {
+    pub(super) fn mapped_mut(&mut self) -> Result<&mut [u8]> {
         self.allocation
             .as_mut()
             .and_then(|allocation| allocation.mapped_slice_mut())

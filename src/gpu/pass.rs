@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::device::{Gpu, failed};
+use super::device::Gpu;
+use super::failed::failed;
 use super::host::HostImage;
 use super::pipeline::{GraphicsState, create_compute_pipeline, create_graphics_pipeline};
 use super::resources::{Resource, Resources};

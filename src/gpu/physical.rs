@@ -4,7 +4,8 @@ use std::ffi::CStr;
 
 use ash::vk;
 
-use super::device::{create_instance, failed, load};
+use super::failed::failed;
+use super::instance::{create_instance, load};
 use super::requirements;
 use super::validation::Messages;
 use crate::error::{Error, Result};

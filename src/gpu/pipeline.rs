@@ -2,7 +2,8 @@
 
 use ash::vk;
 
-use super::device::{Gpu, failed};
+use super::device::Gpu;
+use super::failed::failed;
 use super::memory::ImageKind;
 use super::shader::{Constants, Shader};
 use crate::error::Result;

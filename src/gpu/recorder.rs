@@ -5,7 +5,8 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::commands::{Commands, Timer};
-use super::device::{Gpu, failed};
+use super::device::Gpu;
+use super::failed::failed;
 use crate::error::{Error, Result};
 use crate::number::sum;
 

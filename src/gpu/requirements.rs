@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::host::{Enabled, HostDevice};
+use super::host_device::{Enabled, HostDevice};
 use crate::error::{Error, Result};
 
 /// What a device allows, as far as the engine's sizes depend on it.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::survey::clip;
+use super::clip::clip;
 use crate::scene::Scene;
 use crate::shared::Frame;
 use crate::shot::Shot;

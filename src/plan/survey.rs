@@ -10,6 +10,7 @@ use crate::shot::Shot;
 use crate::sub_light::Part;
 
 use super::camera::Frustum;
+use super::clip::clip;
 
 /// The answer for one light.
 #[derive(Debug, Clone, PartialEq)]
@@ -263,22 +264,4 @@ fn farthest_along(lower: DVec3, upper: DVec3, normal: DVec3, rounding: f64) -> f
     let along = |at: DVec3| normal * at - rounding * at.abs();
     let at_zero = along(DVec3::ZERO.clamp(lower, upper));
     along(lower).max(along(upper)).max(at_zero).element_sum()
-}
-
-/// Keeps the part of a convex polygon where `distance` ≥ 0 (Sutherland and Hodgman).
-pub fn clip(polygon: &mut Vec<DVec3>, distance: impl Fn(DVec3) -> f64) {
-    let Some(&last) = polygon.last() else { return };
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    let (mut previous, mut before) = (last, distance(last));
-    for &current in polygon.iter() {
-        let after = distance(current);
-        if (before < 0.0) != (after < 0.0) {
-            kept.push(previous.lerp(current, before / (before - after)));
-        }
-        if after >= 0.0 {
-            kept.push(current);
-        }
-        (previous, before) = (current, after);
-    }
-    *polygon = kept;
 }

@@ -17,7 +17,7 @@ use gltf::json::root::Get;
 use gltf::json::{Buffer, Index, Root, buffer};
 
 use super::file;
-use super::gltf::{Budget, LoadOptions};
+use super::options::{Budget, LoadOptions};
 use crate::{Error, Result};
 
 /// The extensions whose meaning the loader knows; a file may require these and no others.

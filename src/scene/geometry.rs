@@ -10,9 +10,9 @@ use gltf::json::{Index, Material, Mesh};
 
 use super::accessor::Accessor;
 use super::document::{Document, label};
-use super::gltf::Limits;
 use super::material::TextureUse;
 use super::notes::Notes;
+use super::options::Limits;
 use crate::Result;
 
 /// [scene units] Coordinates beyond are refused: the square of a distance must fit into f32.

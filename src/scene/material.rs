@@ -11,8 +11,8 @@ use gltf::json::{Image, Index, Material as MaterialJson, Texture as TextureJson}
 use image::{ImageFormat, ImageReader};
 
 use super::document::{Document, label};
-use super::gltf::Limits;
 use super::notes::Notes;
+use super::options::Limits;
 use super::{Material, Texture, Wrap};
 use crate::{Error, Result};
 

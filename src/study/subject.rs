@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use crate::compare::faces_wholly;
-use crate::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
 use crate::image::{MAX_SAMPLES, Plane, is_same_file, read_exr, write_exr};
 use crate::number::sum;
+use crate::reference::{ReferenceImage, ReferenceOptions, trace};
 use crate::scene::Texture;
 use crate::shot::{Overrides, Shot};
 use crate::{Error, Result};

@@ -1,7 +1,6 @@
 //! Settings as the flags of the command line that ask for them, and as a short name.
 
-use super::knob::Knob;
-use super::settings::{KNOBS, Settings};
+use super::settings::{KNOBS, Knob, Settings};
 
 impl Settings {
     /// The flags that ask for these settings: all that the technique reads, so that neither defaults nor a device's

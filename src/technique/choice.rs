@@ -9,17 +9,20 @@ use crate::Error;
 pub trait Choice: Copy + PartialEq + Display + FromStr<Err = Error> + 'static {
     /// In the order of their numbers in the C library.
     const ALL: &'static [Self];
+
+    /// What it is, in a sentence.
+    fn summary(self) -> &'static str;
 }
 
 /// Declares an enum whose values have names, on the command line, in tables, in files and in the C library.
 macro_rules! choice {
     ($(#[$doc:meta])* enum $kind:ident, $what:literal {
-        $($(#[$variant_doc:meta])* $variant:ident = $name:literal,)+
+        $($(#[doc = $summary:literal])+ $variant:ident = $name:literal,)+
     }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         pub enum $kind {
-            $($(#[$variant_doc])* #[serde(rename = $name)] $variant,)+
+            $($(#[doc = $summary])+ #[serde(rename = $name)] $variant,)+
         }
 
         impl $kind {
@@ -36,6 +39,12 @@ macro_rules! choice {
 
         impl $crate::technique::Choice for $kind {
             const ALL: &'static [Self] = Self::ALL;
+
+            fn summary(self) -> &'static str {
+                match self {
+                    $(Self::$variant => concat!($($summary),+),)+
+                }
+            }
         }
 
         impl std::fmt::Display for $kind {

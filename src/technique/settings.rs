@@ -1,7 +1,7 @@
 //! The settings of a technique: the table of all knobs, and what they come to.
 
 use super::choice::choice;
-use super::knob::{Access, Field, Knob, Row};
+use super::knob::{self, Access, Field, Row};
 use super::{Recipe, Technique};
 use crate::Result;
 use crate::scene::AreaLight;
@@ -9,9 +9,9 @@ use crate::scene::AreaLight;
 choice! {
     /// What a leaf does whose status differs between the packet's pixels.
     enum Leaf, "leaf mode" {
-        /// Null status: the whole packet goes to the pixel-wise list [Yang09 §4.1].
+        /// A packet whose pixels disagree is worked off pixel by pixel [Yang09 §4.1].
         Reprocess = "reprocess",
-        /// The four comparisons are made for each pixel, all else is shared.
+        /// The pixels of a packet compare for themselves; all else is shared.
         PerPixel = "per-pixel",
     }
 }
@@ -19,9 +19,9 @@ choice! {
 choice! {
     /// How a packet's pixels map to shader invocations.
     enum Mapping, "mapping" {
-        /// One invocation loops over the packet's pixels [Yang09 alg. 2].
+        /// A packet is one invocation, which loops over its pixels [Yang09 alg. 2].
         Serial = "serial",
-        /// One invocation per pixel; all lanes of a packet walk the same stack.
+        /// A packet is one invocation for each pixel; all walk the same stack.
         Lanes = "lanes",
     }
 }
@@ -29,9 +29,9 @@ choice! {
 choice! {
     /// Where the samples of a bitmask stand in the light's strata.
     enum Pattern, "sample pattern" {
-        /// In their middles.
+        /// The light's samples stand in the middles of their strata.
         Regular = "regular",
-        /// Anywhere, the same for all pixels.
+        /// They stand anywhere in them, the same for all pixels.
         Jittered = "jittered",
     }
 }
@@ -39,12 +39,15 @@ choice! {
 choice! {
     /// What the texels of a peeled layer stand for.
     enum Occluders, "kind of occluder" {
-        /// A rectangle each.
+        /// The texels of a peeled layer are rectangles.
         Micropatches = "micropatches",
-        /// The area inside their contour.
+        /// The texels of a peeled layer have contours.
         Contours = "contours",
     }
 }
+
+/// A knob of [`Settings`].
+pub type Knob = knob::Knob<Settings>;
 
 /// Declares [`Settings`] and the table of knobs: a row each, of a field with its type and default, and what [`Row`] says.
 macro_rules! settings {
@@ -62,7 +65,7 @@ macro_rules! settings {
         }
 
         /// All knobs, in the order in which commands and tables name them.
-        pub static KNOBS: &[Knob] = &[$(Knob {
+        pub static KNOBS: &[Knob] = &[$(knob::Knob {
             field: stringify!($field),
             row: $row,
             access: Access {
@@ -73,7 +76,7 @@ macro_rules! settings {
                     Field::from_number(number).map(|value| settings.$field = value)
                 },
                 check: |settings, row| settings.$field.check(row),
-                names: <$type as Field>::names,
+                choices: <$type as Field>::choices,
             },
         },)+];
     };

@@ -4,15 +4,38 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use halfshade::technique::KNOBS;
+
 use super::build::{Workshop, done, root};
 
-/// The header that cbindgen writes from files of `src/c_api`.
+/// The constants of all knobs that are choices, as Rust source: HS_LEAF_REPROCESS for `reprocess` of `leaf`.
+fn choices() -> String {
+    let mut text = String::new();
+    for knob in KNOBS {
+        for (number, (name, summary)) in knob.choices().iter().enumerate() {
+            let constant = format!("HS_{}_{name}", knob.field)
+                .to_uppercase()
+                .replace('-', "_");
+            let field = knob.field;
+            text += &format!("/// `{field}`:{summary}\npub const {constant}: u32 = {number};\n");
+        }
+    }
+    text
+}
+
+/// The header that cbindgen writes from files of `src/c_api`, and from the choices, a file as well.
 fn generate(config: &str, sources: &[&str]) -> String {
+    let workshop = Workshop::new();
+    let generated = workshop.path("choices.rs");
+    fs::write(&generated, choices()).expect("written");
     let config =
         cbindgen::Config::from_file(root().join(config)).expect("the configuration is fine");
     let mut builder = cbindgen::Builder::new().with_config(config);
     for source in sources {
-        builder = builder.with_src(root().join("src/c_api").join(source));
+        builder = builder.with_src(match *source {
+            "choices.rs" => generated.clone(),
+            source => root().join("src/c_api").join(source),
+        });
     }
     let mut text = Vec::new();
     builder
@@ -38,12 +61,13 @@ fn compare(name: &str, generated: &str) {
 #[test]
 fn the_header_is_that_of_the_source() {
     let sources = [
-        "types.rs",
+        "types_context.rs",
         "types_scene.rs",
+        "choices.rs",
         "types_render.rs",
         "devices.rs",
-        "outcome.rs",
-        "context.rs",
+        "call.rs",
+        "contexts.rs",
         "scene.rs",
         "shot.rs",
         "renderer.rs",

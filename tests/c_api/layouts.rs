@@ -6,6 +6,7 @@ use std::mem::offset_of;
 use std::process::Command;
 
 use halfshade::c_api::types::*;
+use halfshade::c_api::vulkan_frame_types::*;
 use halfshade::c_api::vulkan_types::*;
 
 use super::build::{Workshop, done, root};

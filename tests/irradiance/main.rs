@@ -10,8 +10,8 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3, Vec2, Vec3};
-use halfshade::cpu::irradiance::irradiance;
 use halfshade::shared::{ARCTANGENT, IRRADIANCE_NODES, Light};
+use halfshade::twin::irradiance::irradiance;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use truth::Scene;

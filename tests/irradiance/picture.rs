@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
-use halfshade::cpu::irradiance::irradiance;
 use halfshade::gpu::Gpu;
 use halfshade::plan::{Outputs, plan};
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
@@ -11,6 +10,7 @@ use halfshade::scene::{AreaLight, LightShape, Scene};
 use halfshade::shared::Light;
 use halfshade::shot::Shot;
 use halfshade::technique::{Settings, Technique};
+use halfshade::twin::irradiance::irradiance;
 
 use crate::support::{Triangles, camera, light, shot, with_gpu};
 

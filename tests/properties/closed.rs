@@ -4,10 +4,10 @@
 
 use std::sync::atomic::AtomicBool;
 
-use halfshade::cpu::depth::in_view;
-use halfshade::cpu::reference::{ReferenceOptions, trace};
+use halfshade::reference::{ReferenceOptions, trace};
 use halfshade::scene::{Camera, Shape};
 use halfshade::shared::{Fit, View};
+use halfshade::twin::receiver::in_view;
 
 use super::*;
 

@@ -133,7 +133,7 @@ fn receivers_beside_the_front_face_are_shadowed() {
 }
 
 fn traced(shot: &Shot, samples: u32) -> Vec<f32> {
-    use halfshade::cpu::reference::{ReferenceOptions, trace};
+    use halfshade::reference::{ReferenceOptions, trace};
     let options = ReferenceOptions { samples, seed: 1 };
     let image = trace(shot, 0, options, &|_| (), &Default::default());
     image.expect("a reference").visibility.data

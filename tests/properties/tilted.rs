@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use halfshade::cpu::reference::{ReferenceOptions, trace};
+use halfshade::reference::{ReferenceOptions, trace};
 
 use super::*;
 

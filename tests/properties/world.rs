@@ -3,8 +3,8 @@
 use std::sync::atomic::AtomicBool;
 
 use halfshade::compare::compare;
-use halfshade::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
 use halfshade::image::Plane;
+use halfshade::reference::{ReferenceImage, ReferenceOptions, trace};
 use halfshade::scene::Shape;
 
 use super::*;

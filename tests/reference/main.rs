@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
-use halfshade::cpu::reference::{ReferenceOptions, trace};
+use halfshade::reference::{ReferenceOptions, trace};
 use halfshade::scene::{LightShape, Material, Scene, Texture, Wrap};
 use halfshade::shot::Shot;
 

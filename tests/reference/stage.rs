@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use halfshade::cpu::reference::{ReferenceImage, ReferenceOptions, trace};
+use halfshade::reference::{ReferenceImage, ReferenceOptions, trace};
 use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
 use halfshade::shot::Shot;
 use halfshade::technique::Settings;

@@ -1,6 +1,6 @@
 //! Whether deviations look like noise of the size that the image states.
 
-use halfshade::cpu::reference::ReferenceImage;
+use halfshade::reference::ReferenceImage;
 
 use crate::stage::floor_points;
 

@@ -17,8 +17,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use halfshade::Error;
-use halfshade::cpu::reference::ReferenceOptions;
 use halfshade::image::Plane;
+use halfshade::reference::ReferenceOptions;
 use halfshade::render::DEFAULT_COSTS;
 use halfshade::shot::Overrides;
 use halfshade::study::{Bench, Folder, Outcome, Protocol, Subject, front};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use halfshade::cpu::reference::ReferenceOptions;
 use halfshade::gpu::Gpu;
+use halfshade::reference::ReferenceOptions;
 use halfshade::shot::{Overrides, Shot};
 use halfshade::study::{Protocol, Subject};
 use halfshade::technique::Settings;

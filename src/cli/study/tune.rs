@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use halfshade::cpu::reference::SAMPLES;
 use halfshade::gpu::Gpu;
+use halfshade::reference::SAMPLES;
 use halfshade::study::{Bench, Goal, Protocol, Run, Subject, best};
 use halfshade::technique::Settings;
 use halfshade::{Error, Result};

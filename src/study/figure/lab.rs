@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::cpu::reference::ReferenceOptions;
 use crate::gpu::Gpu;
+use crate::reference::ReferenceOptions;
 use crate::render::DEFAULT_COSTS;
 use crate::spread::Spread;
 use crate::technique::Settings;

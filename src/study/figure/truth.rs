@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::cpu::bvh::{Bvh, Ray};
-use crate::cpu::pinhole::Pinhole;
+use crate::reference::bvh::{Bvh, Ray};
+use crate::reference::pinhole::Pinhole;
 use crate::shot::Shot;
 use crate::{Error, Result};
 

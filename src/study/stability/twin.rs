@@ -4,14 +4,14 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::Result;
-use crate::cpu::contour::ShadowMap;
-use crate::cpu::depth::{in_view, project};
-use crate::cpu::radial::SubLight;
-use crate::cpu::resolve;
 use crate::image::Plane;
 use crate::render::Renderer;
 use crate::shot::Shot;
 use crate::technique::Technique;
+use crate::twin::contour::ShadowMap;
+use crate::twin::radial::SubLight;
+use crate::twin::receiver::{in_view, project};
+use crate::twin::resolve;
 
 /// Cells of all views and pixels: beyond it the twin, which leaves nothing out, would take minutes.
 const WORK_MAX: u64 = 4 << 30;

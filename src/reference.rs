@@ -1,19 +1,23 @@
 //! Ray-traced truth: the visibility of an area light by shadow rays to points on it.
 
+pub(crate) mod bvh;
+mod light_sampler;
+pub(crate) mod pinhole;
+mod texture;
+
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 
-use super::bvh::{Bvh, Hit, Ray};
-use super::light::Emitter;
-use super::pinhole::Pinhole;
-use super::texture;
 use crate::image::Plane;
 use crate::scene::Scene;
 use crate::shot::Shot;
 use crate::{Error, Result};
+use bvh::{Bvh, Hit, Ray};
+use light_sampler::Emitter;
+use pinhole::Pinhole;
 
 /// Independent randomisations of the points on the light in each pixel. Their spread gives the
 /// standard error, with 7 degrees of freedom; more of them would make the image itself noisier, since

@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::contour::{Segment, ShadowMap};
-use super::depth::{Receiver, extents};
+use super::receiver::{Receiver, extents};
 use crate::shared::{Fit, View};
 
 /// Share of the receiver's height over the light plane. Occluders no higher than this below the receiver's

@@ -4,8 +4,8 @@
 use glam::Vec2;
 
 use super::contour::ShadowMap;
-use super::depth::{Receiver, extents};
 use super::mssm::Mssm;
+use super::receiver::{Receiver, extents};
 use crate::shared::{KERNEL_LIT, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
 
 /// Rounds of query and shrinking.
@@ -163,8 +163,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cpu::depth::project;
     use crate::shared::Fit;
+    use crate::twin::receiver::project;
 
     const MAP: u32 = 128;
 

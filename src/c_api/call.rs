@@ -1,58 +1,14 @@
-//! How a call ends: a code, and a sentence for people.
+//! A call: its context, what it does, and the sentence of its error.
 
 use std::cell::RefCell;
 use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use ash::vk;
-
-use super::context::Context;
-use super::handles;
+use super::call_result::{CallResult, Fault, quietly};
+use super::context::{CONTEXTS, Context, Held};
+use super::handles::Registry;
 use super::types::*;
-use crate::Error;
-
-/// Why a call failed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
-    pub code: hs_result,
-    pub text: String,
-}
-
-pub type Outcome<T = ()> = Result<T, Fault>;
-
-impl Fault {
-    pub fn new(code: hs_result, text: impl Into<String>) -> Self {
-        Self {
-            code,
-            text: text.into(),
-        }
-    }
-
-    pub fn invalid(text: impl Into<String>) -> Self {
-        Self::new(HS_INVALID_ARGUMENT, text)
-    }
-}
-
-impl From<Error> for Fault {
-    fn from(error: Error) -> Self {
-        let code = match &error {
-            Error::Io { .. } => HS_IO,
-            Error::Parse { .. } => HS_PARSE,
-            Error::Invalid(_) => HS_INVALID_ARGUMENT,
-            Error::Unsupported(_) => HS_UNSUPPORTED,
-            Error::Memory { .. } => HS_OUT_OF_DEVICE_MEMORY,
-            Error::Vulkan { result, .. } => match *result {
-                vk::Result::ERROR_OUT_OF_HOST_MEMORY => HS_OUT_OF_HOST_MEMORY,
-                vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => HS_OUT_OF_DEVICE_MEMORY,
-                vk::Result::ERROR_DEVICE_LOST => HS_DEVICE_LOST,
-                _ => HS_INTERNAL,
-            },
-            Error::Interrupted | Error::Validation(_) => HS_INTERNAL,
-        };
-        Self::new(code, error.to_string())
-    }
-}
 
 thread_local! {
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
@@ -66,7 +22,7 @@ pub struct Scope {
 
 impl Scope {
     /// Errors of this call belong to `context`. Errors: its device was lost, which nothing mends.
-    pub fn enter(&mut self, context: &Arc<Context>) -> Outcome {
+    pub fn enter(&mut self, context: &Arc<Context>) -> CallResult {
         self.context = Some(context.clone());
         match context.is_lost() {
             true => Err(Fault::new(
@@ -79,7 +35,7 @@ impl Scope {
 }
 
 /// Runs an export's body: no panic leaves it, and the sentence of its error is kept.
-pub fn call(body: impl FnOnce(&mut Scope) -> Outcome) -> hs_result {
+pub fn call(body: impl FnOnce(&mut Scope) -> CallResult) -> hs_result {
     let mut scope = Scope::default();
     let ended = catch_unwind(AssertUnwindSafe(|| body(&mut scope)));
     let fault = match ended {
@@ -98,11 +54,6 @@ pub fn call(body: impl FnOnce(&mut Scope) -> Outcome) -> hs_result {
         }
     }));
     fault.code
-}
-
-/// Runs a body that cannot fail but might panic.
-pub fn quietly(body: impl FnOnce()) {
-    let _ = catch_unwind(AssertUnwindSafe(body));
 }
 
 /// Copies the sentence that belongs to the last call that failed: on `context`, or, where that is NULL, on this
@@ -124,7 +75,7 @@ pub unsafe extern "C" fn hs_last_error(
     quietly(|| {
         let sentence = match context.is_null() {
             true => Some(LAST_ERROR.with_borrow(String::clone)),
-            false => handles::CONTEXTS.get(context).map(|found| found.sentence()),
+            false => CONTEXTS.get(context).map(|found| found.sentence()),
         };
         if let Some(sentence) = sentence {
             length = sentence.len() as u64 + 1;
@@ -142,38 +93,26 @@ pub unsafe extern "C" fn hs_last_error(
     length
 }
 
+impl<H, T> Registry<H, Held<T>> {
+    /// An object whose context the call then belongs to.
+    pub fn enter(&self, scope: &mut Scope, handle: *const H) -> CallResult<Arc<Held<T>>> {
+        let held = self.find(handle)?;
+        scope.enter(&held.context)?;
+        Ok(held)
+    }
+}
+
+impl Registry<hs_context, Context> {
+    pub fn enter(&self, scope: &mut Scope, handle: *const hs_context) -> CallResult<Arc<Context>> {
+        let context = self.find(handle)?;
+        scope.enter(&context)?;
+        Ok(context)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_error_has_its_code() {
-        let vulkan = |result| Error::Vulkan {
-            call: "vkQueueSubmit2".into(),
-            result,
-        };
-        let io = std::io::Error::from(std::io::ErrorKind::NotFound);
-        let cases = [
-            (Error::io("a", io), HS_IO),
-            (Error::parse("a", "b"), HS_PARSE),
-            (Error::Invalid("a".into()), HS_INVALID_ARGUMENT),
-            (Error::Unsupported("a".into()), HS_UNSUPPORTED),
-            (
-                vulkan(vk::Result::ERROR_OUT_OF_HOST_MEMORY),
-                HS_OUT_OF_HOST_MEMORY,
-            ),
-            (
-                vulkan(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY),
-                HS_OUT_OF_DEVICE_MEMORY,
-            ),
-            (vulkan(vk::Result::ERROR_DEVICE_LOST), HS_DEVICE_LOST),
-            (vulkan(vk::Result::ERROR_UNKNOWN), HS_INTERNAL),
-            (Error::Validation(vec!["a".into()]), HS_INTERNAL),
-        ];
-        for (error, code) in cases {
-            assert_eq!(Fault::from(error).code, code);
-        }
-    }
 
     #[test]
     fn a_panic_becomes_a_code() {

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::depth::Limit;
+use super::receiver::Limit;
 
 /// A map of `size` × `size` depths, row by row.
 #[derive(Debug, Clone, Copy)]

@@ -3,8 +3,8 @@
 
 use glam::{Vec2, Vec4};
 
-use super::depth::Receiver;
 use super::kernels::unpacked;
+use super::receiver::Receiver;
 use crate::shared::{Costs, Kernel, Packet};
 
 /// T_d of [Yang09 §4.3].

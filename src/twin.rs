@@ -1,0 +1,14 @@
+//! Scalar twins of the passes, one for each stage and named like its shader or the library of shaders that it mirrors.
+//!
+//! A twin decides in f32 what is an integer (a status, a cell, a list): such a decision can only be the same when it is taken
+//! on the same values, so `receiver`, `kernels` and `classify` mirror their shaders' `precise` expressions operation by
+//! operation. What is summed up, the visibility, is derived anew from the geometry in f64.
+
+pub mod classify;
+pub mod contour;
+pub mod irradiance;
+pub mod kernels;
+pub mod mssm;
+pub mod radial;
+pub mod receiver;
+pub mod resolve;
