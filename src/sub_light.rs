@@ -45,7 +45,7 @@ pub struct Part {
     weight: f64,
 }
 
-/// \[−1, 1)² Points that are evenly spread over the square and over its sides: Sobol's, scrambled as Owen 1995 does. Lattices
+/// \[−1, 1)² Points that are evenly spread over the square and over its sides: Sobol's, scrambled [Owen95]. Lattices
 /// and sequences of fixed steps are more even, but what repeats before a lamp, such as slats, resonates with them.
 pub fn evenly_spread(count: u32) -> impl Iterator<Item = DVec2> {
     let coordinate = |index, dimension| f64::from(sobol_burley::sample(index, dimension, SCRAMBLE));

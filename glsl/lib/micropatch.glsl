@@ -1,5 +1,5 @@
 // Micropatches: each occluding texel of the shadow map is a rectangle parallel to the map at the texel's depth,
-// and their back-projections' areas add up [AHL06, GBP06]. For techniques over the pixel list (pixel_list.glsl); needs
+// and their back-projections' areas add up [Atty06, GBP06]. For techniques over the pixel list (pixel_list.glsl); needs
 // radial.glsl.
 
 layout(constant_id = 15) const bool GAP_FILLING = false;  // patches reach out to their neighbours

@@ -1,4 +1,4 @@
-//! Micropatches [GBP06, after AHL06]: every texel of the kernel that occludes is a rectangle at its depth; the areas
+//! Micropatches [GBP06, after Atty06]: every texel of the kernel that occludes is a rectangle at its depth; the areas
 //! of their back-projections add up.
 //!
 //! Right: a plate parallel to the light, and any occluder of one depth. Wrong: between patches of different depths
