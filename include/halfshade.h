@@ -4,7 +4,7 @@
  * of the standalone tier, in which the library owns the Vulkan device. halfshade_vulkan.h adds the tier for engines
  * that have a device of their own. This one needs no Vulkan headers.
  *
- * A frame takes these steps (examples/standalone.c has them all):
+ * A frame takes these steps (README.md has an example, examples/visibility.py another):
  *
  *     hs_context_create       a device
  *     hs_scene_load           triangles, from a glTF file or (hs_scene_create) from arrays

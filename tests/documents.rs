@@ -136,3 +136,22 @@ fn links_lead_somewhere() {
     }
     assert!(links > 10, "{links}");
 }
+
+#[test]
+fn examples_that_are_named_exist() {
+    let mut named = 0;
+    for (path, text) in texts() {
+        for rest in text.split("examples/").skip(1) {
+            let is_part = |c: char| c.is_ascii_alphanumeric() || "_./".contains(c);
+            let name = rest.split(|c| !is_part(c)).next().unwrap_or_default();
+            let name = name.trim_end_matches('.');
+            assert!(
+                root().join("examples").join(name).exists(),
+                "{}: {name}",
+                path.display()
+            );
+            named += 1;
+        }
+    }
+    assert!(named > 5, "{named}");
+}

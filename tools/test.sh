@@ -60,6 +60,11 @@ step() {
     echo "test: passed in $((SECONDS - start)) s: $*"
 }
 
+# What `cargo doc` says, without warnings.
+documentation() {
+    RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --all-features --lib
+}
+
 # The tests that have a longer version, at full length.
 slow_tests() {
     HALFSHADE_SLOW=1 cargo test --bin halfshade --test mutants --test faults --test cycles --test c_api
@@ -93,6 +98,7 @@ case $mode in
         step cargo clippy --all-targets -- -D warnings
         step cargo check --lib --no-default-features
         step cargo check --lib --no-default-features --features capi
+        step documentation
         step cargo test
         ;;
     slow) step slow_tests ;;

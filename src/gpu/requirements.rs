@@ -293,7 +293,7 @@ pub unsafe fn load_instance(
 /// The names of everything required that a host's device lacks.
 ///
 /// # Errors
-/// As for [`load_instance`].
+/// The instance is too old to ask for what is required.
 ///
 /// # Safety
 /// The handles are alive and belong together.
