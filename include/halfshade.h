@@ -16,8 +16,8 @@
  *
  * Conventions
  *
- * Structures begin with `type` (its HS_TYPE_ constant), `size` (its sizeof) and `next` (NULL: nothing extends a
- * structure yet). A wrong type or size is HS_INVALID_ARGUMENT. Fields called `reserved` are 0. Numbers have a fixed
+ * Structures begin with `type` (its HS_TYPE_ constant), `size` (its sizeof) and `next` (NULL; hs_knob alone extends a
+ * structure, hs_settings). A wrong type or size is HS_INVALID_ARGUMENT. Fields called `reserved` are 0. Numbers have a fixed
  * width; yes and no are 1 and 0.
  *
  * Handles (hs_context *, hs_scene *, ...) are opaque and have no address behind them: one that was destroyed, made up
@@ -93,6 +93,9 @@
 // `type` of hs_reference_info.
 #define HS_TYPE_REFERENCE_INFO 14
 
+// hs_knob
+#define HS_TYPE_KNOB 15
+
 // Run under the Khronos validation layer with synchronization validation; see hs_context_validation_messages.
 #define HS_CONTEXT_VALIDATE 1
 
@@ -153,6 +156,9 @@
 // `technique`: The mean of many hard shadow maps.
 #define HS_TECHNIQUE_REFERENCE_MAPS 8
 
+// `technique`: A single light sample and the width of its shadow [Kirsch03].
+#define HS_TECHNIQUE_SHADOW_WIDTH 9
+
 // `leaf`: A packet whose pixels disagree is worked off pixel by pixel [Yang09 §4.1].
 #define HS_LEAF_REPROCESS 0
 
@@ -176,6 +182,15 @@
 
 // `occluders`: The texels of a peeled layer have contours.
 #define HS_OCCLUDERS_CONTOURS 1
+
+// `neighbours`: From three neighbours, at distances that double.
+#define HS_NEIGHBOURS_3 0
+
+// `neighbours`: From six neighbours, at distances that double.
+#define HS_NEIGHBOURS_6 1
+
+// `neighbours`: From the nearest texel that nothing hides, found by jump flooding.
+#define HS_NEIGHBOURS_FLOOD 2
 
 // A device and its objects' common ground. Opaque.
 typedef struct hs_context hs_context;
@@ -402,7 +417,7 @@ typedef struct hs_settings {
     uint32_t type;
     // sizeof(hs_settings)
     uint32_t size;
-    // NULL
+    // NULL, or hs_knob structures for knobs that have no field here.
     const void *next;
     // HS_TECHNIQUE_...
     uint32_t technique;
@@ -568,6 +583,21 @@ typedef struct hs_reference_info {
     // Another seed gives independent noise, the same seed the same image.
     uint64_t seed;
 } hs_reference_info;
+
+// A knob by its name, chained to hs_settings.next, any number of them up to 64. Later ones win over earlier ones and over
+// the fields of hs_settings, so that every knob of every technique can be reached.
+typedef struct hs_knob {
+    // HS_TYPE_KNOB
+    uint32_t type;
+    // sizeof(hs_knob)
+    uint32_t size;
+    // NULL, or the next hs_knob.
+    const void *next;
+    // As `halfshade render --help` has it, without dashes: "neighbours".
+    const char *name;
+    // As the command line takes it: "flood". "1" or "0" of what has no value there: the flag is given, or not.
+    const char *value;
+} hs_knob;
 
 // Done.
 #define HS_OK 0

@@ -20,6 +20,7 @@ mod packet_contour;
 mod pcss;
 mod pixel_contour;
 mod reference_maps;
+mod shadow_width;
 
 use crate::frame::kernel::{CLASSIFY, KERNELS};
 use crate::frame::{Domain, Pass, Resource};
@@ -28,7 +29,7 @@ use crate::sub_light::{self, Part};
 
 pub use choice::Choice;
 pub use knob::{Row, SweepFlag};
-pub use settings::{KNOBS, Knob, Leaf, Mapping, Occluders, Pattern, Settings};
+pub use settings::{KNOBS, Knob, Leaf, Mapping, Neighbours, Occluders, Pattern, Settings};
 
 /// Registers techniques, in the order of their numbers in the C library: name of the variant, name for people, and what
 /// implements it.
@@ -71,6 +72,8 @@ techniques! {
     Hard = "hard", hard::Hard;
     /// The mean of many hard shadow maps.
     ReferenceMaps = "reference-maps", reference_maps::ReferenceMaps;
+    /// A single light sample and the width of its shadow [Kirsch03].
+    ShadowWidth = "shadow-width", shadow_width::ShadowWidth;
 }
 
 /// What a technique's file says of it. What it leaves out is as for a rival with a single view of kernels.

@@ -12,3 +12,4 @@ pub mod mssm;
 pub mod radial;
 pub mod receiver;
 pub mod resolve;
+pub mod shadow_width;

@@ -82,7 +82,7 @@ fn publications_that_are_cited_are_listed() {
     let list = root().join("docs/references.md");
     let rows = read(&list);
     let rows = rows.lines().filter(|line| line.starts_with("| ["));
-    let listed: BTreeSet<String> = rows.flat_map(|row| keys(row)).collect();
+    let listed: BTreeSet<String> = rows.flat_map(keys).collect();
     let texts = texts().into_iter().filter(|(path, _)| *path != list);
     let cited: BTreeSet<String> = texts.flat_map(|(_, text)| keys(&text)).collect();
     assert!(listed.contains("Yang09") && cited.contains("Yang09"));
@@ -154,4 +154,23 @@ fn examples_that_are_named_exist() {
         }
     }
     assert!(named > 5, "{named}");
+}
+
+#[test]
+fn files_that_documents_name_exist() {
+    let mut named = 0;
+    for path in documents() {
+        for quoted in read(&path).split('`').skip(1).step_by(2) {
+            let name = quoted.split([':', ' ']).next().unwrap_or_default();
+            let is_file = ["src/", "glsl/", "tests/", "tools/", "docs/"]
+                .iter()
+                .any(|folder| name.starts_with(folder));
+            if is_file && !name.contains(['*', '{', '<']) && !name.contains("NAME") {
+                let target = root().join(name.trim_end_matches(['.', ',']));
+                assert!(target.exists(), "{}: {name}", path.display());
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 20, "{named}");
 }

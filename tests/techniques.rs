@@ -12,7 +12,9 @@ mod goldens;
 use glam::{DVec2, DVec3, Vec3};
 use halfshade::shared::{Fit, View};
 use halfshade::shot::Shot;
-use halfshade::technique::{Occluders, Pattern, Settings, Technique};
+use halfshade::technique::{Neighbours, Occluders, Pattern, Settings, Technique};
+use halfshade::twin::receiver::{in_view, project};
+use halfshade::twin::shadow_width::ShadowWidths;
 use support::{
     Triangles, camera, disc_light, load, rectangle, rectangle_light, renderer, shot, with_gpu,
 };
@@ -71,6 +73,14 @@ fn siblings() -> Vec<(&'static str, Settings)> {
             },
         ),
         ("pcss", usual(Technique::Pcss)),
+        ("shadow-width", usual(Technique::ShadowWidth)),
+        (
+            "shadow-width 3 neighbours",
+            Settings {
+                neighbours: Neighbours::Three,
+                ..usual(Technique::ShadowWidth)
+            },
+        ),
         ("hard", usual(Technique::Hard)),
         (
             "hard 3x3",
@@ -205,4 +215,82 @@ fn hierarchical_micropatches_are_micropatches() {
             }
         }
     });
+}
+
+/// Widths and what they do to light are those of the scalar twin, which reads the device's map, in every view. The way to a texel
+/// is found by the same operations; drivers may contract the products of bilinear weights, so visibility is within 1e-5.
+#[test]
+fn shadow_widths_are_those_of_their_twin() {
+    with_gpu(|gpu| {
+        for neighbours in [Neighbours::Three, Neighbours::Six, Neighbours::Flood] {
+            let settings = Settings {
+                neighbours,
+                start: 16,
+                map: 64,
+                ..Settings::usual(Technique::ShadowWidth)
+            };
+            let shot = load("plate", 32, settings.clone());
+            check_widths(gpu, &shot, &settings);
+        }
+    });
+}
+
+fn check_widths(gpu: &std::sync::Arc<halfshade::gpu::Gpu>, shot: &Shot, settings: &Settings) {
+    let mut renderer = renderer(gpu, shot);
+    renderer.render_view(0).expect("a view");
+    let (planned, fit) = (
+        renderer.plan().views().next().expect("a view").clone(),
+        renderer.fits().expect("fits")[0],
+    );
+    let spreads = renderer
+        .plan()
+        .steps()
+        .filter(|step| step.pass.name == "width_spread")
+        .count() as u32;
+    let texels = (settings.map * settings.map) as usize;
+    let map: Vec<f32> = renderer.read_image("shadow_map", texels).expect("a map");
+    let both: Vec<[f32; 2]> = renderer
+        .read_buffer("shadow_widths", 2 * texels)
+        .expect("widths");
+    let found = both[(spreads as usize & 1) * texels..].iter().take(texels);
+    let twin = ShadowWidths::new(&planned.view, &fit, settings, &map, spreads);
+    assert!(twin.widths().iter().filter(|width| **width > 0.0).count() > 100);
+    for (index, (found, wanted)) in found.zip(twin.widths()).enumerate() {
+        assert!(
+            (found[0] - wanted).abs() <= 1e-6 * wanted,
+            "texel {index}: {} for {wanted}",
+            found[0]
+        );
+    }
+    let (positions, normals) = (
+        renderer
+            .read_image::<[f32; 4]>("position_world", 32 * 32)
+            .expect("positions"),
+        renderer
+            .read_image::<[f32; 4]>("normal_world", 32 * 32)
+            .expect("normals"),
+    );
+    let occlusion: Vec<f32> = renderer
+        .read_buffer("occlusion", 32 * 32)
+        .expect("occlusion");
+    let mut partly = 0;
+    for ((position, normal), found) in positions.iter().zip(&normals).zip(&occlusion) {
+        let to_point = Vec3::from_slice(position) - Vec3::from(planned.view.center);
+        let normal = Vec3::from_slice(normal);
+        if position[3] == 0.0 || !in_view(&planned.view, to_point, normal) {
+            continue;
+        }
+        let receiver = project(&planned.view, &fit, false, to_point, normal);
+        let nearest = (receiver.t + 0.5).floor().as_ivec2();
+        let inside = nearest.min_element() >= 0 && nearest.max_element() < settings.map as i32;
+        let index = nearest.y * settings.map as i32 + nearest.x;
+        let depth = if inside { map[index as usize] } else { 0.0 };
+        let wanted = planned.view.weight * twin.hidden_share(settings, &receiver, depth);
+        assert!(
+            (found - wanted).abs() < 1e-5,
+            "{found} for {wanted} at {position:?}"
+        );
+        partly += usize::from(wanted > 0.0 && wanted < planned.view.weight);
+    }
+    assert!(partly > 30, "{partly} pixels of penumbra");
 }

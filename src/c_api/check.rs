@@ -16,7 +16,8 @@ struct Head {
     next: *const c_void,
 }
 
-fn check<T: Structure>(pointer: *const T) -> CallResult {
+/// Checks all but what extends the structure, which is returned.
+fn check_head<T: Structure>(pointer: *const T) -> CallResult<*const c_void> {
     let name = T::NAME;
     let invalid = |text: String| Err(Fault::invalid(text));
     if pointer.is_null() {
@@ -41,11 +42,43 @@ fn check<T: Structure>(pointer: *const T) -> CallResult {
         ));
     }
     // SAFETY: the structure is as large as the library's own.
-    let next = unsafe { (*pointer.cast::<Head>()).next };
-    match next.is_null() {
+    Ok(unsafe { (*pointer.cast::<Head>()).next })
+}
+
+fn check<T: Structure>(pointer: *const T) -> CallResult {
+    match check_head(pointer)?.is_null() {
         true => Ok(()),
-        false => invalid(format!("{name}: next must be NULL, for nothing extends it")),
+        false => Err(Fault::invalid(format!(
+            "{}: next must be NULL, for nothing extends it",
+            T::NAME
+        ))),
     }
+}
+
+/// Most structures that extend another; a chain that is longer may have no end.
+const CHAINED_MAX: usize = 64;
+
+/// A structure that the caller has filled, and those that extend it, in their order.
+///
+/// # Safety
+/// As for [`input`], for each of them.
+pub unsafe fn extended<T: Structure, N: Structure>(pointer: *const T) -> CallResult<(T, Vec<N>)> {
+    let mut next = check_head(pointer)?.cast::<N>();
+    // SAFETY: checked, and the caller's promise; so too below.
+    let structure = unsafe { *pointer };
+    let mut chained = Vec::new();
+    while !next.is_null() {
+        if chained.len() == CHAINED_MAX {
+            return Err(Fault::invalid(format!(
+                "{}: more than {CHAINED_MAX} structures extend it",
+                T::NAME
+            )));
+        }
+        let after = check_head(next)?;
+        chained.push(unsafe { *next });
+        next = after.cast();
+    }
+    Ok((structure, chained))
 }
 
 /// A structure that the caller has filled.

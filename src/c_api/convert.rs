@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::call_result::{CallResult, Fault};
+use super::check::{self, extended};
 use super::types::*;
 use crate::scene::{AreaLight, Camera, LightShape};
 use crate::technique::{KNOBS, Knob, Settings, Technique};
@@ -56,7 +57,13 @@ macro_rules! knob_fields {
     };
 }
 
-pub fn settings(given: &hs_settings) -> CallResult<Settings> {
+/// The settings that the caller has filled, with the knobs that extend them.
+///
+/// # Safety
+/// As for [`extended`], and the texts of knobs end with a NUL.
+pub unsafe fn settings(pointer: *const hs_settings) -> CallResult<Settings> {
+    // SAFETY: the caller's promise, here and below.
+    let (given, knobs): (hs_settings, Vec<hs_knob>) = unsafe { extended(pointer) }?;
     let mut settings = Settings {
         packet: (given.packet_width, given.packet_height),
         bias: (given.bias != USUAL_BIAS).then_some(given.bias),
@@ -68,8 +75,33 @@ pub fn settings(given: &hs_settings) -> CallResult<Settings> {
         };
     }
     knob_fields!(read);
+    for knob in &knobs {
+        let text = |pointer, name| {
+            let text = unsafe { check::text(pointer, name) }?;
+            text.ok_or_else(|| Fault::invalid(format!("hs_knob: {name} is NULL")))
+        };
+        turn(
+            &mut settings,
+            &text(knob.name, "name")?,
+            &text(knob.value, "value")?,
+        )?;
+    }
     settings.validate()?;
     Ok(settings)
+}
+
+/// Sets a knob by the name of its flag.
+fn turn(settings: &mut Settings, name: &str, value: &str) -> CallResult {
+    let found = KNOBS.iter().find(|knob| knob.row.flag == name);
+    let knob = found.ok_or_else(|| Fault::invalid(format!("there is no knob {name:?}")))?;
+    match (knob.row.is_switch(), value) {
+        (true, "1") => Ok(knob.set(settings, "")?),
+        (true, "0") => Ok(knob.unset(settings)?),
+        (true, _) => Err(Fault::invalid(format!(
+            "{name} is \"1\" or \"0\", not {value:?}"
+        ))),
+        (false, _) => Ok(knob.set(settings, value)?),
+    }
 }
 
 /// Asks for the bias that is usual for what runs.

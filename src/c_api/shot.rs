@@ -180,7 +180,7 @@ pub unsafe extern "C" fn hs_shot_set_settings(
 ) -> hs_result {
     change(shot, |shot| {
         // SAFETY: the caller's promise.
-        shot.settings = convert::settings(&unsafe { input(settings) }?)?;
+        shot.settings = unsafe { convert::settings(settings) }?;
         Ok(())
     })
 }

@@ -58,6 +58,8 @@ pub const HS_TYPE_STATISTICS: u32 = 12;
 pub const HS_TYPE_PASS: u32 = 13;
 /// `type` of hs_reference_info.
 pub const HS_TYPE_REFERENCE_INFO: u32 = 14;
+/// hs_knob
+pub const HS_TYPE_KNOB: u32 = 15;
 
 /// Run under the Khronos validation layer with synchronization validation; see hs_context_validation_messages.
 pub const HS_CONTEXT_VALIDATE: u32 = 1;

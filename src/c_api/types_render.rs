@@ -13,7 +13,7 @@ pub struct hs_settings {
     pub r#type: u32,
     /// sizeof(hs_settings)
     pub size: u32,
-    /// NULL
+    /// NULL, or hs_knob structures for knobs that have no field here.
     pub next: *const c_void,
     /// HS_TECHNIQUE_...
     pub technique: u32,
@@ -61,6 +61,23 @@ pub struct hs_settings {
     /// [0, 4096] PACKET_CONTOUR with casters that the library knows beforehand: points of the light that cast hard
     /// shadows, on all of it, in place of sub-lights that an occluder is nearer to than they are wide; 0 = none.
     pub near_points: u32,
+}
+
+/// A knob by its name, chained to hs_settings.next, any number of them up to 64. Later ones win over earlier ones and over
+/// the fields of hs_settings, so that every knob of every technique can be reached.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hs_knob {
+    /// HS_TYPE_KNOB
+    pub r#type: u32,
+    /// sizeof(hs_knob)
+    pub size: u32,
+    /// NULL, or the next hs_knob.
+    pub next: *const c_void,
+    /// As `halfshade render --help` has it, without dashes: "neighbours".
+    pub name: *const c_char,
+    /// As the command line takes it: "flood". "1" or "0" of what has no value there: the flag is given, or not.
+    pub value: *const c_char,
 }
 
 /// What a shot holds.
@@ -192,6 +209,7 @@ pub struct hs_reference_info {
 
 structures! {
     hs_settings = HS_TYPE_SETTINGS,
+    hs_knob = HS_TYPE_KNOB,
     hs_shot_counts = HS_TYPE_SHOT_COUNTS,
     hs_renderer_info = HS_TYPE_RENDERER_INFO,
     hs_statistics = HS_TYPE_STATISTICS,

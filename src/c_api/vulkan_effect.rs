@@ -2,7 +2,7 @@
 
 use super::call::call;
 use super::call_result::{CallResult, Fault};
-use super::check::{flag, input, optional, output, place, structures_of};
+use super::check::{flag, input, output, place, structures_of};
 use super::context::{CONTEXTS, Held};
 use super::convert::{self, choice, reserved};
 use super::handles::Registry;
@@ -47,9 +47,9 @@ pub unsafe extern "C" fn hs_vk_effect_create(
                 "effects are for a host's device; create the context with hs_vk_context_create",
             ));
         }
-        let settings = match unsafe { optional(info.settings) }? {
-            Some(settings) => convert::settings(&settings)?,
-            None => Settings::usual(Technique::PacketContour),
+        let settings = match info.settings.is_null() {
+            true => Settings::usual(Technique::PacketContour),
+            false => unsafe { convert::settings(info.settings) }?,
         };
         let all = [Casters::Gathered, Casters::DrawnByHost, Casters::Maps];
         let surfaces = [Surface::Depths, Surface::Positions];

@@ -63,6 +63,8 @@ pub enum Domain {
     MssmLevel,
     /// The nodes of a level of the hierarchical shadow map.
     HsmLevel,
+    /// All texels of the view's shadow map.
+    MapTexels,
 }
 
 /// What is drawn.

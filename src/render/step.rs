@@ -63,8 +63,14 @@ impl Recording<'_> {
                 over: Domain::Instances,
                 ..
             } => dispatch_instances(commands, name, pipelines, inputs),
+            Work::Dispatch {
+                over: list @ (Domain::PacketList | Domain::PixelList),
+                ..
+            } => self.dispatch_list(commands, step, pipelines, list)?,
             Work::Dispatch { over, .. } => {
-                self.dispatch(commands, step, pipelines, over, self.list(step, inputs))?;
+                let bound = pipelines.compute()?.with(self.list(step, inputs));
+                let groups = self.groups(over, push(step), side)?;
+                commands.dispatch(name, bound, push(step), groups);
             }
             Work::Draw { what, into, .. } => {
                 let target = self.target(into, side, inputs)?;
@@ -78,33 +84,26 @@ impl Recording<'_> {
         Ok(())
     }
 
-    fn dispatch(
+    /// Lists are worked off in rounds, each of which finds its own groups.
+    fn dispatch_list(
         &self,
         commands: &mut Commands,
         step: &Step,
         pipelines: &Pipelines,
-        over: Domain,
-        list: usize,
+        list: Domain,
     ) -> Result<()> {
-        let push = push(step);
-        let bound = pipelines.compute()?.with(list);
-        match over {
-            Domain::PacketList | Domain::PixelList => {
-                // Lists are worked off in rounds, each of which finds its own groups.
-                let rounds = self.resources.buffer("rounds")?;
-                let dispatch = |round| {
-                    let first = push.index as usize * self.rounds as usize;
-                    let offset = (first + round as usize) * size_of::<Round>() + in_round(over);
-                    let push = Push {
-                        level: round,
-                        ..push
-                    };
-                    (bound, push, Groups::Indirect(rounds, offset as u64))
-                };
-                commands.dispatch_all(step.pass.name, (0..self.rounds).map(dispatch));
-            }
-            _ => commands.dispatch(step.pass.name, bound, push, self.groups(over, push)?),
-        }
+        let (push, bound) = (push(step), pipelines.compute()?.with(0));
+        let rounds = self.resources.buffer("rounds")?;
+        let dispatch = |round| {
+            let first = push.index as usize * self.rounds as usize;
+            let offset = (first + round as usize) * size_of::<Round>() + in_round(list);
+            let push = Push {
+                level: round,
+                ..push
+            };
+            (bound, push, Groups::Indirect(rounds, offset as u64))
+        };
+        commands.dispatch_all(step.pass.name, (0..self.rounds).map(dispatch));
         Ok(())
     }
 
@@ -119,7 +118,8 @@ impl Recording<'_> {
         }
     }
 
-    fn groups(&self, over: Domain, push: Push) -> Result<Groups<'_>> {
+    /// `side`: [texel] of the view's map.
+    fn groups(&self, over: Domain, push: Push, side: u32) -> Result<Groups<'_>> {
         let plan = self.plan;
         let triangles = plan.frame.opaque_count + plan.frame.masked_count;
         let found = |offset| {
@@ -137,9 +137,10 @@ impl Recording<'_> {
                 return found(offset_of!(Fit, level_groups) + level);
             }
             Domain::HsmLevel => {
-                let side = plan.map.div_ceil(1 << push.level);
+                let side = side.div_ceil(1 << push.level);
                 Groups::Direct(tiles((side, side)))
             }
+            Domain::MapTexels => Groups::Direct(tiles((side, side))),
             Domain::Once | Domain::Instances | Domain::PacketList | Domain::PixelList => {
                 Groups::Direct([1, 1, 1])
             }

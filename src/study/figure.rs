@@ -6,6 +6,7 @@ mod atty06_costs;
 mod busy;
 mod check;
 mod equal_texels;
+mod kirsch03;
 mod lab;
 mod plot;
 mod report;
@@ -120,7 +121,7 @@ impl Candidate {
 }
 
 /// All experiments, by publication.
-pub static EXPERIMENTS: [Experiment; 13] = [
+pub static EXPERIMENTS: [Experiment; 14] = [
     yang09::FIG8,
     yang09::FIG9,
     yang09::FIG11,
@@ -133,6 +134,7 @@ pub static EXPERIMENTS: [Experiment; 13] = [
     atty06::FIG20,
     atty06_costs::FIG22,
     atty06_costs::FIG24,
+    kirsch03::TABLE1,
     equal_texels::EQUAL_TEXELS,
 ];
 

@@ -215,6 +215,14 @@ impl<S> Knob<S> {
         }
     }
 
+    /// Sets a switch as it is without its flag.
+    ///
+    /// # Errors
+    /// It is no switch.
+    pub fn unset(&self, settings: &mut S) -> Result<()> {
+        self.set_number(settings, u32::from(self.row.negates()))
+    }
+
     /// Its value as the C library and specialization constants have it: of a choice its place, of a field that is on or
     /// off 1 or 0.
     pub fn number(&self, settings: &S) -> u32 {
@@ -346,6 +354,33 @@ impl Field for (u32, u32) {
                 row.refuse(&format!("{least}x{least} to {most}x{most}"), self.text())
             }
             _ => Ok(()),
+        }
+    }
+}
+
+/// A finite number from 0.
+impl Field for f32 {
+    fn text(&self) -> String {
+        self.to_string()
+    }
+
+    fn parse(text: &str) -> Result<Self> {
+        // Adding 0 takes the sign from −0.
+        parsed(text).map(|value: f32| value + 0.0)
+    }
+
+    fn number(&self) -> u32 {
+        self.to_bits()
+    }
+
+    fn from_number(number: u32) -> Numbered<Self> {
+        Ok(f32::from_bits(number))
+    }
+
+    fn check(&self, row: &Row) -> Result<()> {
+        match self.is_finite() && *self >= 0.0 {
+            true => Ok(()),
+            false => row.refuse("", self),
         }
     }
 }

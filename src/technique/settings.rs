@@ -49,6 +49,18 @@ choice! {
 /// A knob of [`Settings`].
 pub type Knob = knob::Knob<Settings>;
 
+choice! {
+    /// From where the shadow-width map gets a texel's width.
+    enum Neighbours, "neighbourhood" {
+        /// From three neighbours, at distances that double.
+        Three = "3",
+        /// From six neighbours, at distances that double.
+        Six = "6",
+        /// From the nearest texel that nothing hides, found by jump flooding.
+        Flood = "flood",
+    }
+}
+
 /// Declares [`Settings`] and the table of knobs: a row each, of a field with its type and default, and what [`Row`] says.
 macro_rules! settings {
     ($($(#[$doc:meta])* $field:ident: $type:ty = $default:expr, $row:expr;)+) => {
@@ -237,6 +249,45 @@ settings! {
         )
         .within(1, 4096, "the number of reference maps is {}")
         .swept("reference-maps", "NUMBERS", "Values of --maps of reference-maps [default: 256]");
+
+    /// `ShadowWidth` only.
+    neighbours: Neighbours = Neighbours::Flood,
+        Row::value(
+            "neighbours",
+            "KIND",
+            "With shadow-width: from where a texel gets its width, {}",
+        )
+        .sets("NEIGHBOURS");
+
+    /// [4, 1024] `ShadowWidth` with neighbours only: the starting difference is 1 / start; no shadow is wider than start texels.
+    start: u32 = 64,
+        Row::value(
+            "start",
+            "N",
+            "With shadow-width and 3 or 6 neighbours: start with a difference of 1/N, 4 to 1024; widths end at N texels",
+        )
+        .within(4, 1024, "the starting difference is 1 over {}")
+        .sets("START");
+
+    /// `ShadowWidth` only: factor on c_scale; 1 = the inner penumbra of an edge.
+    scale: f32 = 1.0,
+        Row::value(
+            "scale",
+            "FACTOR",
+            "With shadow-width: how fast shadows darken inwards, 0 or more; 1 is as an edge of the light's size does",
+        )
+        .finite("the scale of shadow widths is a finite number from 0")
+        .sets("SCALE");
+
+    /// [share of the light] `ShadowWidth` only: c_bias, what hidden pixels are brighter by.
+    shadow_bias: f32 = 0.0,
+        Row::value(
+            "shadow-bias",
+            "SHARE",
+            "With shadow-width: by how much of the light hidden pixels are brighter, 0 or more",
+        )
+        .finite("the bias of shadow widths is a finite number from 0")
+        .sets("SHADOW_BIAS");
 
     /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
     footprint_pruning: bool = true,

@@ -1,7 +1,7 @@
 //! What each technique is known to get wrong.
 
 use glam::{DVec2, DVec3};
-use halfshade::technique::{Occluders, Pattern, Settings, Technique};
+use halfshade::technique::{Neighbours, Occluders, Pattern, Settings, Technique};
 
 use super::support::{Triangles, camera, rectangle, rectangle_light, shot, visibility, with_gpu};
 
@@ -228,4 +228,83 @@ fn percentage_closer_shadows_guess() {
             .iter()
             .all(|value| (8.0 * value).fract() == 0.0)
     );
+}
+
+/// A plate of 1.6 × 1.6 at a height, under which the light of 1 × 1 is not hidden to its last part unless it is low.
+fn plate_at(height: f64) -> Triangles {
+    Triangles::new().plate(height, &rectangle([-0.8, 0.8], [-0.8, 0.8]))
+}
+
+/// [Kirsch03 §2] Shadows are only where the light's centre is hidden: smaller than they are.
+#[test]
+fn a_single_light_sample_shades_the_inner_penumbra_alone() {
+    let floor = |technique| {
+        floor_of(
+            plate_at(1.7),
+            Settings {
+                map: 256,
+                ..usual(technique)
+            },
+        )
+    };
+    let (soft, hard) = (floor(Technique::ShadowWidth), floor(Technique::Hard));
+    let lit = hard.iter().zip(&soft).filter(|(hard, _)| **hard == 1.0);
+    let count = lit.clone().count();
+    assert!(count > 200, "{count} pixels are lit");
+    assert!(lit.into_iter().all(|(_, soft)| *soft == 1.0));
+    let between = soft
+        .iter()
+        .filter(|soft| **soft > 0.05 && **soft < 0.95)
+        .count();
+    assert!(between > 100, "{between} pixels of penumbra");
+}
+
+/// [Kirsch03 §5, fig. 5] One depth is known at a texel: where a far blocker comes before a near one, the shadow gets softer, so
+/// that more blockers let through more light.
+#[test]
+fn overlapping_blockers_soften_shadows() {
+    let settings = || Settings {
+        map: 256,
+        ..usual(Technique::ShadowWidth)
+    };
+    let strip = rectangle([-0.1, 0.1], [-0.6, 0.6]);
+    let alone = floor_of(plate_at(0.5), settings());
+    let crossed = floor_of(plate_at(0.5).plate(3.0, &strip), settings());
+    let brighter = alone
+        .iter()
+        .zip(&crossed)
+        .map(|(alone, crossed)| crossed - alone);
+    let most = brighter.fold(0.0, f32::max);
+    assert!(most > 0.2, "brighter by {most}");
+}
+
+/// [Kirsch03 §5, fig. 7] In a coarse map widths begin with a texel: where blocker and receiver are close, that is most of the
+/// penumbra, and the border is a step; farther away it is not.
+#[test]
+fn shadows_of_close_blockers_begin_with_a_step() {
+    let brightest_inside = |height| {
+        let floor = |technique| floor_of(plate_at(height), usual(technique));
+        let (soft, hard) = (floor(Technique::ShadowWidth), floor(Technique::Hard));
+        let inside = soft.iter().zip(&hard).filter(|(_, hard)| **hard == 0.0);
+        inside.map(|(soft, _)| *soft).fold(0.0, f32::max)
+    };
+    let (close, far) = (brightest_inside(0.05), brightest_inside(1.7));
+    assert!(close < 0.5 && far > 0.8, "{close} and {far}");
+}
+
+/// [Kirsch03 §4] With neighbours, widths end where the difference is 1: a shadow whose penumbra is wider never gets dark.
+#[test]
+fn widths_end_with_the_starting_difference() {
+    let darkest = |neighbours| {
+        let settings = Settings {
+            map: 256,
+            neighbours,
+            start: 4,
+            ..usual(Technique::ShadowWidth)
+        };
+        let floor = floor_of(plate_at(1.0), settings);
+        floor.iter().copied().fold(1.0, f32::min)
+    };
+    let (three, flood) = (darkest(Neighbours::Three), darkest(Neighbours::Flood));
+    assert!(three > 0.5 && flood < 0.01, "{three} and {flood}");
 }

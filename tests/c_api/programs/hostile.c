@@ -120,6 +120,7 @@ static void of_shots(hs_context *context) {
     HEAD(hs_camera, camera, HS_TYPE_CAMERA);
     HEAD(hs_light, light, HS_TYPE_LIGHT);
     HEAD(hs_settings, settings, HS_TYPE_SETTINGS);
+    HEAD(hs_knob, knob, HS_TYPE_KNOB);
     HEAD(hs_shot_counts, counts, HS_TYPE_SHOT_COUNTS);
     HEAD(hs_reference_info, reference, HS_TYPE_REFERENCE_INFO);
     float value[4];
@@ -158,12 +159,39 @@ static void of_shots(hs_context *context) {
     light.intensity = NAN; REFUSED(hs_shot_set_lights(shot, &light, 1));
     light.intensity = 1;
     OK(hs_shot_set_lights(shot, &light, 1));
-    REFUSED(hs_settings_default(9, &settings));
+    REFUSED(hs_settings_default(1000, &settings));
     REFUSED(hs_settings_default(0, NULL));
     WRONG_STRUCTURES(settings, hs_settings_default(0, &settings));
     OK(hs_settings_default(0, &settings));
     REFUSED(hs_shot_set_settings(NULL, &settings));
     WRONG_STRUCTURES(settings, hs_shot_set_settings(shot, &settings));
+    knob.name = "map";
+    knob.value = "64";
+    settings.next = &knob;
+    OK(hs_shot_set_settings(shot, &settings));
+    WRONG_STRUCTURES(knob, hs_shot_set_settings(shot, &settings));
+    knob.value = "15";
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.value = "a";
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.value = "\xff";
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.value = NULL;
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.value = "64";
+    knob.name = "no such knob";
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.name = NULL;
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.name = "no-gap-filling";
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.value = "1";
+    OK(hs_shot_set_settings(shot, &settings));
+    /* A chain without end. */
+    knob.next = &knob;
+    REFUSED(hs_shot_set_settings(shot, &settings));
+    knob.next = NULL;
+    settings.next = NULL;
     {
         uint32_t *number;
         for (number = &settings.technique; number <= &settings.maps; ++number) {

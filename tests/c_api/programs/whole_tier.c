@@ -162,12 +162,42 @@ static void frames(hs_context *context) {
 static void techniques(hs_context *context) {
     uint32_t technique;
     hs_shot *shot = make_shot(context, 8, 0.4);
-    for (technique = HS_TECHNIQUE_PACKET_CONTOUR; technique <= HS_TECHNIQUE_REFERENCE_MAPS; ++technique) {
+    for (technique = HS_TECHNIQUE_PACKET_CONTOUR; technique <= HS_TECHNIQUE_SHADOW_WIDTH; ++technique) {
         HEAD(hs_settings, settings, HS_TYPE_SETTINGS);
         OK(hs_settings_default(technique, &settings));
         CHECK(settings.technique == technique && settings.split == (technique == 0 ? 4u : 1u));
         OK(hs_shot_set_settings(shot, &settings));
     }
+    hs_shot_destroy(shot);
+}
+
+/* Knobs by name: the later one wins, and what they ask for is what is rendered. */
+static void knobs(hs_context *context) {
+    static float narrow[64], wide[64];
+    float *results[2] = {narrow, wide};
+    uint32_t i, pixel, brighter = 0;
+    hs_shot *shot = make_shot(context, 8, 0.4);
+    for (i = 0; i < 2; ++i) {
+        hs_renderer *renderer = NULL;
+        HEAD(hs_settings, settings, HS_TYPE_SETTINGS);
+        HEAD(hs_knob, scale, HS_TYPE_KNOB);
+        HEAD(hs_knob, again, HS_TYPE_KNOB);
+        OK(hs_settings_default(HS_TECHNIQUE_SHADOW_WIDTH, &settings));
+        scale.name = "scale";
+        scale.value = "1000";
+        again.name = "scale";
+        again.value = "0";
+        settings.next = &scale;
+        scale.next = i == 1 ? &again : NULL;
+        OK(hs_shot_set_settings(shot, &settings));
+        OK(hs_renderer_create(shot, NULL, &renderer));
+        OK(hs_renderer_render(renderer));
+        OK(hs_renderer_visibility(renderer, 0, results[i], 64));
+        hs_renderer_destroy(renderer);
+    }
+    /* Without scale nothing is shaded. */
+    for (pixel = 0; pixel < 64; ++pixel) brighter += wide[pixel] > narrow[pixel] + 0.5f;
+    CHECK(brighter > 0);
     hs_shot_destroy(shot);
 }
 
@@ -188,6 +218,7 @@ int main(int argc, char **argv) {
     devices(context);
     textured_scene(context);
     techniques(context);
+    knobs(context);
     frames(context);
     OK(hs_scene_load(context, argv[1], &scene));
     OK(hs_scene_describe(scene, &counts));
