@@ -29,6 +29,7 @@ const NAMES: [&str; 13] = [
     "atty06-fig20",
     "atty06-fig22",
     "atty06-fig24",
+    "kirsch03-table1",
     "equal-texels",
 ];
 
