@@ -5,6 +5,7 @@
 #include "pass.glsl"
 #include "bounds.glsl"
 #include "quadtree.glsl"
+#include "hierarchy_layout.glsl"
 
 layout(local_size_x = 1) in;
 layout(constant_id = 23) const bool GIVEN_MAPS = false;  // a host has the shadow maps already
@@ -56,9 +57,11 @@ void main() {
         int levels = max(level_covering(int(min(side, float(view.map_size)))) + 1 - int(ROOT_LEVELS), 1);
         fit.level_count = min(uint(levels), view.levels_max);
     }
-    uvec3 map_groups = uvec3((uvec2(view.map_size) + TILE_SIZE - 1u) / TILE_SIZE, 1u);
-    for (uint level = 0u; level < LEVELS_MAX; ++level)
-        fit.level_groups[level] = level < fit.level_count ? map_groups : uvec3(0u);
+    for (uint level = 0u; level < LEVELS_MAX; ++level) {
+        uint nodes = uint(covered_side(view) >> spacing_log2(int(level)));
+        uvec3 groups = uvec3(uvec2((nodes + TILE_SIZE - 1u) / TILE_SIZE), 1u);
+        fit.level_groups[level] = level < fit.level_count ? groups : uvec3(0u);
+    }
     // A view that nothing is accumulated into writes every pixel, casters or not.
     fit.kernel_groups = empty && ACCUMULATE ? uvec3(0u) : uvec3(tiles, 1u);
     uvec2 packets = (frame.size + uvec2(PACKET_WIDTH, PACKET_HEIGHT) - 1u) / uvec2(PACKET_WIDTH, PACKET_HEIGHT);

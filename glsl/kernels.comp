@@ -1,12 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A kernel for each pixel, shrunk by repeated MSSM queries, and the pixels that need no integration [SS07; Yang09 alg. 1,
+// A kernel for each pixel, shrunk by repeated queries of the hierarchy, and the pixels that need no integration [SS07; Yang09 alg. 1,
 // step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds every cell that adds to the pixel's
 // integral.
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "quadtree.glsl"
-#include "mssm.glsl"
+#include "hierarchy.glsl"
 #include "kernel.glsl"
 #include "occlusion.glsl"
 
@@ -18,11 +18,15 @@ readonly BUFFER(fits);
 writeonly BUFFER(kernels);
 BUFFER(counters);
 TEXTURE(shadow_map);
-
 #include "surface.glsl"
 
-// Queries that shrink a kernel; the gain of a fifth is below a texel in all scenes seen.
-const int REFINEMENTS = 4;
+// Queries that shrink a kernel; hardly any pixel takes as many.
+const int ROUNDS_MAX = 8;
+
+// [level] From the third query on, and where one has changed nothing, nodes are so much smaller: where they reach beyond the
+// kernel, smaller ones do less so.
+const int FINER = SPARSEST > 0u ? 1 : 0;
+const int COARSE_ROUNDS = 2;
 
 // [cell] Kernels no wider and no higher are looked at sample by sample. A tilted surface without occluders has such a
 // kernel of its own, for bounds do not tell it from an occluder: uphill it comes nearer to the light.
@@ -39,19 +43,21 @@ bool nothing_occludes(Receiver receiver, Cells cells) {
 }
 
 Kernel kernel_of(View view, Fit fit, Receiver receiver) {
-    int size = int(view.map_size);
     Kernel kernel = Kernel(KERNEL_LIT, 0u, 0u, 0.0, 0.0);
     // The projection's near plane is the nearest caster: depth 1.
     float depth_max = 1.0;
     Cells cells;
     vec2 range = vec2(0.0);
-    for (int i = 0; i < REFINEMENTS; ++i) {
+    int finer = 0;
+    for (int round = 1; round <= ROUNDS_MAX; ++round) {
         if (depth_max <= receiver.biased) return kernel;
         cells = kernel_cells(view, receiver, depth_max);
         if (any(greaterThan(cells.first, cells.last))) return kernel;
-        range = mssm_query(cells.first, cells.last, int(fit.level_count), size);
-        if (range.y >= depth_max) break;
-        depth_max = range.y;
+        range = hierarchy_query(view, cells.first, cells.last, int(fit.level_count), finer);
+        bool stalls = range.y >= depth_max;
+        if (stalls && finer == FINER) break;
+        if (stalls || round >= COARSE_ROUNDS) finer = FINER;
+        depth_max = min(depth_max, range.y);
     }
     if (depth_max <= receiver.biased) return kernel;
     if (CONTOURS && LAYERS == 1u && nothing_occludes(receiver, cells)) return kernel;

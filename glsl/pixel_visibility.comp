@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Visibility of the pixel list's pixels: the MSSM is walked for each, and the edges of its contour are integrated as they are
+// Visibility of the pixel list's pixels: the hierarchy is walked for each, and the edges of its contour are integrated as they are
 // found [Yang09 alg. 1, step 8; alg. 3; integration of GBP07]. A pixel is walked for as a packet of its own. The image is
 // that of contour_visibility.comp, which looks into every cell of the kernel.
 #include "pass.glsl"

@@ -6,12 +6,14 @@
 pub mod back;
 pub mod front;
 mod graph;
+mod hierarchy;
 pub mod kernel;
 pub mod map;
 mod pass;
 mod resource;
 
 pub use graph::{Graph, Scope, Step, counts};
+pub use hierarchy::Density;
 pub use pass::{Domain, Drawn, Lent, Pass, Target, Work};
 pub use resource::{Inventory, Resource, Shape, Sizes};
 

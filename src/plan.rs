@@ -15,7 +15,7 @@ mod text;
 mod views;
 
 use crate::error::Result;
-use crate::frame::{Casters, Front, Graph, Inventory};
+use crate::frame::{Casters, Density, Front, Graph, Inventory};
 use crate::gpu::Limits;
 use crate::shared;
 use crate::shot::Shot;
@@ -48,10 +48,12 @@ pub struct Plan {
     pub frame: shared::Frame,
     pub lights: Vec<LightPlan>,
     pub outputs: Outputs,
-    /// [level] MSSM levels that there is memory for; 0 = no MSSM.
+    /// [level] Of the hierarchy over the map that there is memory for; 0 = no hierarchy.
     pub levels: u32,
     /// [bit] 16 or 32, of a bound in it.
-    pub mssm_bits: u32,
+    pub bounds_bits: u32,
+    /// How densely its nodes stand.
+    pub density: Density,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
     /// [turn] After which the driver ends loops.
@@ -179,7 +181,8 @@ impl Plan {
             lights: Vec::new(),
             outputs,
             levels: 0,
-            mssm_bits: settings.mssm_bits,
+            bounds_bits: settings.mssm_bits,
+            density: settings.hierarchy.density(settings.map),
             map: 0,
             loop_turns: limits.loop_turns,
             packet: settings.packet,

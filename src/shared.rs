@@ -99,7 +99,7 @@ shared_constants! {
     /// [level] The largest kernel starts from up to 4×4 roots: the two levels above them take longer to build than they
     /// save, in all scenes seen.
     ROOT_LEVELS: uint = 2;
-    /// Most levels an MSSM can have: 8192 = 2^13, and the level of single cells, less those of the roots.
+    /// Most levels a hierarchy can have: 8192 = 2^13, and the level of single cells, less those of the roots.
     LEVELS_MAX: uint = 12;
     /// [invocation] Work group of passes over lists and triangles.
     GROUP_SIZE: uint = 64;
@@ -108,7 +108,7 @@ shared_constants! {
     GROUPS_PER_ROW: uint = 32768;
     /// `Progress::next` of an entry that is finished.
     FINISHED: uint = 0x7fffffff;
-    /// [pixel] Side of the work group of passes over the image and of the MSSM's.
+    /// [pixel] Side of the work group of passes over images and over the hierarchy.
     TILE_SIZE: uint = 8;
     /// tan 60°: the front face of a sub-light holds the receivers that lie within it of the axis in
     /// both directions; the side faces hold the rest.
@@ -271,7 +271,7 @@ shared! {
         map_size: uint,
         /// [texel] Slope bias.
         bias: float,
-        /// [level] Number of MSSM levels that there is memory for.
+        /// [level] Number of the hierarchy's levels that there is memory for.
         levels_max: uint,
     }
 
@@ -297,7 +297,7 @@ shared! {
         /// [texel] t = focal · tangent + center.
         focal: vec2,
         center: vec2,
-        /// [level] Number of MSSM levels built.
+        /// [level] Number of the hierarchy's levels; 0 = no casters.
         level_count: uint,
         /// VkDispatchIndirectCommand of each pass.
         level_groups: uvec3 [LEVELS_MAX as usize],
@@ -384,7 +384,7 @@ shared! {
     struct Push {
         /// Index of the view, or of the light for passes that run per light.
         index: uint,
-        /// MSSM level to build, layer to draw, or round in which a list is worked off.
+        /// Level of the hierarchy to build, layer to draw, or round in which a list is worked off.
         level: uint,
     }
 

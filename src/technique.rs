@@ -29,7 +29,9 @@ use crate::sub_light::{self, Part};
 
 pub use choice::Choice;
 pub use knob::{Row, SweepFlag};
-pub use settings::{KNOBS, Knob, Leaf, Mapping, Neighbours, Occluders, Pattern, Settings};
+pub use settings::{
+    Hierarchy, KNOBS, Knob, Leaf, Mapping, Neighbours, Occluders, Pattern, Settings,
+};
 
 /// Registers techniques, in the order of their numbers in the C library: name of the variant, name for people, and what
 /// implements it.
@@ -82,7 +84,7 @@ pub trait Method: Sync {
     fn recipe(&self, settings: &Settings) -> Recipe;
 
     /// The flags of the knobs that it reads with these settings, beside those that all read: map, bias and counters, and
-    /// the MSSM's if it has one.
+    /// the hierarchy's if it has kernels.
     fn knobs(&self, settings: &Settings) -> Vec<&'static str>;
 
     /// Specialization constants beside those that knobs set.
@@ -134,10 +136,8 @@ impl Technique {
 /// A technique with its settings, as what there is to run.
 #[derive(Debug, Clone, Default)]
 pub struct Recipe {
-    /// Whether the passes read the MSSM: all that have kernels do.
-    pub mssm: bool,
-    /// Whether they read the hierarchical shadow map.
-    pub hsm: bool,
+    /// Whether the passes have kernels, and so read the hierarchy over the map.
+    pub kernels: bool,
     /// [layer] Of the shadow map that are peeled off and kept; 0 = the map itself is read.
     pub layers: u32,
     /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.
@@ -160,7 +160,7 @@ impl Recipe {
     fn over_pixels(name: &'static str, shader: &'static str) -> Self {
         let pass = Pass::dispatch(name, shader, Domain::PixelList);
         Self {
-            mssm: true,
+            kernels: true,
             words: 1,
             turns: TURNS_OF_SCANS,
             passes: once([KERNELS, CLASSIFY, pass]),
@@ -211,10 +211,10 @@ const CONTOUR_BIAS: f32 = 0.25;
 
 /// [turn] Of a scan for each cell: the cell, what is found in it, and what neighbours find that differ in all of it.
 const TURNS_OF_SCANS: u32 = 8;
-/// [turn] Of a walk through the MSSM, which passes most cells by.
+/// [turn] Of a walk through the hierarchy, which passes most cells by.
 const TURNS_OF_WALKS: u32 = 4;
 
-/// The MSSM walked pixel by pixel [Yang09 §4.2].
+/// The hierarchy walked pixel by pixel [Yang09 §4.2].
 const PIXELS: Pass = Pass::dispatch(
     "pixel_visibility",
     "pixel_visibility.comp",

@@ -6,9 +6,9 @@
 
 pub mod classify;
 pub mod contour;
+pub mod hierarchy;
 pub mod irradiance;
 pub mod kernels;
-pub mod mssm;
 pub mod radial;
 pub mod receiver;
 pub mod resolve;

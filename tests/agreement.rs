@@ -11,7 +11,7 @@ use halfshade::gpu::Gpu;
 use halfshade::plan::{Outputs, plan};
 use halfshade::scene::LightShape;
 use halfshade::shot::Shot;
-use halfshade::technique::{Leaf, Mapping, Settings, Technique};
+use halfshade::technique::{Hierarchy, Leaf, Mapping, Settings, Technique};
 use support::{largest_difference, load, visibility, with_gpu};
 
 /// [visibility] Rounding of sums of up to some hundred segments, each of the order of 1, in any order.
@@ -75,6 +75,10 @@ fn turned(base: &Settings, turn: usize) -> Vec<Settings> {
         mssm_bits: 16,
         ..base.clone()
     });
+    list.extend(Hierarchy::ALL.iter().map(|&hierarchy| Settings {
+        hierarchy,
+        ..base.clone()
+    }));
     list
 }
 

@@ -13,11 +13,11 @@ use halfshade::render::DEFAULT_COSTS;
 use halfshade::scene::LightShape;
 use halfshade::shared::{KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
 use halfshade::shot::Shot;
-use halfshade::technique::{Leaf, Mapping};
+use halfshade::technique::{Hierarchy as Density, Leaf, Mapping, Settings};
 use halfshade::twin::classify::{Classified, Decision, classify};
 use halfshade::twin::contour::ShadowMap;
+use halfshade::twin::hierarchy::Hierarchy;
 use halfshade::twin::kernels::{kernel_of, unpacked};
-use halfshade::twin::mssm::Mssm;
 use halfshade::twin::radial::SubLight;
 use halfshade::twin::receiver::{Receiver, in_view, project};
 use halfshade::twin::resolve;
@@ -47,21 +47,32 @@ fn receivers(traces: &Traces, points: &[Option<Point>]) -> Vec<Seen> {
         .collect()
 }
 
-fn check_mssm(traces: &Traces, bits: u32) -> Mssm {
-    let mssm = Mssm::new(MAP, &traces.map, traces.fit.level_count, bits);
+/// The twin's hierarchy, equal to the device's in every node and bit.
+fn check_hierarchy<'a>(traces: &'a Traces, settings: &Settings) -> Hierarchy<'a> {
+    let map = ShadowMap {
+        size: MAP as i32,
+        depths: &traces.map,
+    };
+    let density = settings.hierarchy.density(MAP);
+    let (count, most) = (traces.fit.level_count, traces.planned.view.levels_max);
+    let hierarchy = Hierarchy::new(map, density, count, most, settings.mssm_bits);
+    let (width, height, _) = density.extent(MAP, most);
     let bits = |bounds: &[f32; 2]| bounds.map(f32::to_bits);
-    for level in 0..traces.fit.level_count as usize {
-        let texels = (MAP * MAP) as usize;
-        let found = &traces.mssm[level * texels..(level + 1) * texels];
-        for (i, (found, wanted)) in found.iter().zip(mssm.level(level)).enumerate() {
-            assert_eq!(bits(found), bits(wanted), "level {level}, texel {i}");
+    for level in 0..count {
+        let along = density.nodes_along(MAP, most, level);
+        let (left, top, layer) = density.origin(MAP, most, level);
+        for (i, wanted) in hierarchy.level(level).iter().enumerate() {
+            let (x, y) = (i as u32 % along, i as u32 / along);
+            let texel = (layer * height + top + y) * width + left + x;
+            let found = &traces.hierarchy[texel as usize];
+            assert_eq!(bits(found), bits(wanted), "level {level}, node {x}, {y}");
         }
     }
-    mssm
+    hierarchy
 }
 
 /// The twin's kernels, equal to the device's in every pixel and bit.
-fn check_kernels(traces: &Traces, receivers: &[Seen], mssm: &Mssm) -> Vec<Kernel> {
+fn check_kernels(traces: &Traces, receivers: &[Seen], hierarchy: &Hierarchy) -> Vec<Kernel> {
     let (view, oblique) = (&traces.planned.view, traces.planned.oblique);
     let map = ShadowMap {
         size: MAP as i32,
@@ -74,7 +85,7 @@ fn check_kernels(traces: &Traces, receivers: &[Seen], mssm: &Mssm) -> Vec<Kernel
             status: KERNEL_NONE,
             ..Kernel::default()
         };
-        let of = |receiver| kernel_of(view, oblique, &receiver, &map, mssm);
+        let of = |receiver| kernel_of(view, oblique, &receiver, &map, hierarchy);
         let wanted = receiver.map_or(none, of);
         let pixel = (i as u32 % SIZE, i as u32 / SIZE);
         assert_eq!(*found, wanted, "pixel {pixel:?}, {receiver:?}");
@@ -240,8 +251,8 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
             continue;
         }
         let seen = receivers(&traces, &points(&renderer));
-        let mssm = check_mssm(&traces, shot.settings.mssm_bits);
-        let kernels = check_kernels(&traces, &seen, &mssm);
+        let hierarchy = check_hierarchy(&traces, &shot.settings);
+        let kernels = check_kernels(&traces, &seen, &hierarchy);
         let counted = check_lists(shot, &traces, &seen, &kernels);
         undecided = [undecided[0] + counted[0], undecided[1] + counted[1]];
         largest = largest.max(check_integration(
@@ -351,6 +362,18 @@ fn other_packets_leaf_rules_and_mappings() {
                 &format!("staircase, {packet:?} {leaf:?} {mapping:?}"),
                 &shot,
             );
+        }
+    });
+}
+
+#[test]
+fn hierarchies_of_other_densities() {
+    with_device(|gpu| {
+        let mut shot = shot("staircase");
+        shot.settings.split = 1;
+        for density in [Density::Hsm, Density::Mssm] {
+            shot.settings.hierarchy = density;
+            check(gpu, &format!("staircase, {density}"), &shot);
         }
     });
 }

@@ -1,4 +1,4 @@
-// Hierarchical extraction of a packet's contour [Yang09 §4.2, alg. 3]: the MSSM is walked from the nodes that cover the
+// Hierarchical extraction of a packet's contour [Yang09 §4.2, alg. 3]: the hierarchy is walked from the nodes that cover the
 // packet's kernel; a node is passed by where no sample can be an occluder to one of the packet's pixels and none to another
 // (fig. 6, cases 4 and 5). It finds the edges that a scan of the kernel finds, in an order of its own. Needs what
 // pixel_list.glsl and packet_list.glsl include.
@@ -8,7 +8,7 @@
 // (`limits_in`), which follow the receivers' planes; see `limit_at`.
 
 #include "quadtree.glsl"
-#include "mssm.glsl"
+#include "hierarchy.glsl"
 #include "walk.glsl"
 
 layout(constant_id = 4) const bool FOOTPRINT = true;  // prune nodes that miss the light
@@ -47,13 +47,15 @@ bool misses_light(View view, Packet packet, vec2 kappa, ivec2 node, int side, fl
         || any(lessThan(vec2(node + side), packet.centers.xy + reach * view.extent.xy));
 }
 
-// A walk over the packet's kernel, from nodes of the lowest level that covers it from its corner on, as far as levels are
-// built. Later rounds go on where the one before stood.
+// [cell] Where the first root of a walk over the packet's kernel begins.
+ivec2 first_root(Packet packet, int top) { return aligned(unpacked(packet.first), top); }
+
+// A walk over the packet's kernel, from nodes of the lowest level that is as large, as far as levels are built. Later rounds go
+// on where the one before stood.
 Walk walk_over(Packet packet, uint level_count, Progress from) {
-    ivec2 first = unpacked(packet.first);
-    ivec2 side = unpacked(packet.last) - first + 1;
+    ivec2 side = unpacked(packet.last) - unpacked(packet.first) + 1;
     int top = min(level_covering(max(side.x, side.y)), int(level_count) - 1);
-    Walk walk = walk_from(first, top);
+    Walk walk = walk_from(first_root(packet, top), top);
     if (!is_first_round()) walk = resumed_walk(from, top);
     return walk;
 }
@@ -62,19 +64,21 @@ Walk walk_over(Packet packet, uint level_count, Progress from) {
 bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
     ivec2 first = unpacked(packet.first);
     ivec2 last = unpacked(packet.last);
+    ivec2 root = first_root(packet, walk.top);
     bool found = false;
     SEARCH_WHILE(!found && !walk.ended) {
         int side = 1 << walk.level;
-        vec2 bounds = mssm_fetch(walk.node, walk.level, int(view.map_size));
+        vec2 bounds = hierarchy_fetch(view, min(walk.node, last), walk.level);
         vec2 limits = limits_in(packet, vec2(walk.node), vec2(walk.node + side));
-        bool inside = all(lessThanEqual(walk.node, last));
+        // Nodes stand where the level has them, not where the kernel begins and ends: some hang over.
+        bool inside = all(lessThanEqual(walk.node, last)) && all(greaterThan(walk.node + side, first));
         bool open = inside && bounds.y > limits.x && bounds.x <= limits.y && !is_pruned(view, packet, walk.node, side, bounds);
         nodes_visited += uint(inside);
         samples_read += uint(inside);
         found = open && walk.level == 0;
         if (found) cell = walk.node;
         if (open && !found) descend(walk);
-        else pass_by(walk, first, last);
+        else pass_by(walk, root, last);
     }
     return found;
 }

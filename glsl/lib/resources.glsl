@@ -57,7 +57,7 @@
 #define RESOURCE_caster_indices ARRAY(26, uint, caster_indices)
 #define RESOURCE_shadow_map(AS) AS(27, texture2D, image2D, shadow_map)
 #define RESOURCE_layers(AS) AS(28, texture2DArray, image2DArray, layers)
-#define RESOURCE_mssm(AS) AS(29, texture2DArray, image2DArray, mssm)
+#define RESOURCE_hierarchy(AS) AS(29, texture2DArray, image2DArray, hierarchy)
 
 // From kernels to visibility.
 #define RESOURCE_kernels ARRAY(30, Kernel, kernels)

@@ -62,8 +62,8 @@ struct ViewStats {
     with_casters: usize,
     /// [triangle] Drawn in a view, on average over views with casters.
     caster_triangles_mean: f64,
-    /// [level] Most MSSM levels built in a view.
-    mssm_levels_max: u32,
+    /// [level] Most levels of the hierarchy in a view.
+    hierarchy_levels_max: u32,
 }
 
 impl Stats {
@@ -142,7 +142,7 @@ impl ViewStats {
             with_receivers: fits.iter().filter(|fit| fit.receiver_count > 0).count(),
             with_casters,
             caster_triangles_mean: sum(fits.iter().map(triangles)) / with_casters.max(1) as f64,
-            mssm_levels_max: fits.iter().map(|fit| fit.level_count).max().unwrap_or(0),
+            hierarchy_levels_max: fits.iter().map(|fit| fit.level_count).max().unwrap_or(0),
         })
     }
 }

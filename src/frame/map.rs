@@ -1,8 +1,8 @@
 //! A view's shadow map, fitted to what can cast on what is visible, and the structures over it.
 
-use super::Casters;
 use super::pass::{Domain, Drawn, Lent, Pass, Target, Work};
 use super::resource::{Resource, Shape};
+use super::{Casters, Density};
 use crate::gpu::ImageKind;
 use crate::shared::{self, Fit, SECTOR_STEPS, View};
 
@@ -68,12 +68,13 @@ const KEEP_LAYER: Pass = Pass::new(
 )
 .lasting();
 
-/// A level of the multi-scale shadow map [Yang09 §4.2, SS07].
-const MSSM: Pass = Pass::dispatch("mssm", "mssm.comp", Domain::MssmLevel).lasting();
-const MSSM_16: Pass = Pass::dispatch("mssm", "mssm_16.comp", Domain::MssmLevel).lasting();
+/// A level of the hierarchy over the map.
+const HIERARCHY: Pass = building("hierarchy.comp");
+const HIERARCHY_16: Pass = building("hierarchy_16.comp");
 
-/// A level of the hierarchical shadow map [DU07].
-const HSM: Pass = Pass::dispatch("hsm", "hsm.comp", Domain::HsmLevel).lasting();
+const fn building(shader: &'static str) -> Pass {
+    Pass::dispatch("hierarchy", shader, Domain::HierarchyLevel).lasting()
+}
 
 const fn drawn(
     name: &'static str,
@@ -94,14 +95,22 @@ const fn drawn(
 /// What a technique reads of a view's shadow map.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Structures {
-    /// [level] Of the MSSM; 0 = none.
-    pub mssm_levels: u32,
+    /// [level] Of the hierarchy; 0 = none.
+    pub levels: u32,
     /// [bit] 16 or 32, of a bound in it.
-    pub mssm_bits: u32,
-    /// [level] Of the hierarchical shadow map; 0 = none.
-    pub hsm_levels: u32,
+    pub bounds_bits: u32,
     /// [layer] That are kept; 0 = the map itself is read.
     pub layers: u32,
+}
+
+/// A hierarchy of levels below `levels` over a map of `map` × `map` texels, with bounds of 16 or 32 bits.
+pub fn hierarchy_shape(density: Density, map: u32, levels: u32, bits: u32) -> Shape {
+    let kind = match bits {
+        16 => ImageKind::Bounds16,
+        _ => ImageKind::Bounds,
+    };
+    let (width, height, layers) = density.extent(map, levels);
+    Shape::layers(kind, (width, height), layers)
 }
 
 /// Once a frame, before the first view.
@@ -117,22 +126,18 @@ pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
         Casters::Maps => &[RECEIVERS, FIT, SHADOW_MAP_IMPORTED],
     };
     let mut passes: Vec<(Pass, u32)> = map.iter().map(|&pass| (pass, 0)).collect();
-    let mssm = match structures.mssm_bits {
-        16 => MSSM_16,
-        _ => MSSM,
+    let hierarchy = match structures.bounds_bits {
+        16 => HIERARCHY_16,
+        _ => HIERARCHY,
     };
-    passes.extend((0..structures.mssm_levels).map(|level| (mssm, level)));
-    passes.extend((1..=structures.hsm_levels).map(|level| (HSM, level)));
+    // The lowest two are built at once.
+    let built = (0..structures.levels).filter(|&level| level != 1);
+    passes.extend(built.map(|level| (hierarchy, level)));
     for layer in 0..structures.layers {
         passes.extend((layer > 0).then_some((PEEL, layer)));
         passes.push((KEEP_LAYER, layer));
     }
     passes
-}
-
-/// [level] Of a hierarchical shadow map over a map of `side` texels, from 2×2 texels to a single node.
-pub fn hsm_levels(side: u32) -> u32 {
-    side.next_power_of_two().ilog2()
 }
 
 /// What passes draw and build.
@@ -149,20 +154,11 @@ pub const RESOURCES: &[Resource] = &[
     Resource::new("shadow_map", |s| {
         Shape::image(ImageKind::Depth, (s.map, s.map))
     }),
-    Resource::new("mssm", |s| {
-        let kind = match s.mssm_bits {
-            16 => ImageKind::Bounds16,
-            _ => ImageKind::Bounds,
-        };
-        Shape::layers(kind, (s.map, s.map), s.levels)
+    Resource::new("hierarchy", |s| {
+        hierarchy_shape(s.density, s.map, s.levels, s.bounds_bits)
     }),
     Resource::new("layers", |s| {
         Shape::layers(ImageKind::Layers, (s.map, s.map), s.layers)
-    }),
-    Resource::new("hsm", |s| {
-        // Its levels below one another, as if the map's side were the next power of two.
-        let size = (s.map.div_ceil(2), s.map.next_power_of_two());
-        Shape::image(ImageKind::Bounds, size).when(s.hsm)
     }),
 ];
 

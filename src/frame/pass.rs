@@ -59,10 +59,8 @@ pub enum Domain {
     PacketList,
     /// The view's list of single pixels, in rounds.
     PixelList,
-    /// The nodes of a level of the MSSM, if the view reads it.
-    MssmLevel,
-    /// The nodes of a level of the hierarchical shadow map.
-    HsmLevel,
+    /// The nodes of a level of the hierarchy over the map, if the view needs it.
+    HierarchyLevel,
     /// All texels of the view's shadow map.
     MapTexels,
 }

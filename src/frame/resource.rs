@@ -1,6 +1,6 @@
 //! A resource: memory that passes share under the name that their shaders give it.
 
-use super::{Casters, Front};
+use super::{Casters, Density, Front};
 use crate::gpu::ImageKind;
 use crate::scene::Scene;
 
@@ -47,14 +47,14 @@ pub struct Sizes {
     pub sector_tables: u32,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
-    /// [bit] 16 or 32, of a bound in the MSSM.
-    pub mssm_bits: u32,
-    /// [level] Of the MSSM.
+    /// [bit] 16 or 32, of a bound in the hierarchy over it.
+    pub bounds_bits: u32,
+    /// [level] Of the hierarchy; 0 = none.
     pub levels: u32,
+    pub density: Density,
     /// [layer] Of the shadow map that are kept.
     pub layers: u32,
-    /// Whether there are a hierarchical shadow map, kernels, and lists of packets and of pixels.
-    pub hsm: bool,
+    /// Whether there are kernels, and lists of packets and of pixels.
     pub kernels: bool,
     pub packet_lists: bool,
     pub pixel_lists: bool,

@@ -12,7 +12,7 @@ pub struct Limits {
     pub image_side: u32,
     /// [layer] Most layers of an image.
     pub image_layers: u32,
-    /// [byte] Largest image (asked for the MSSM's kind).
+    /// [byte] Largest image (asked for the hierarchy's kind).
     pub image_bytes: u64,
     /// [byte] Largest storage buffer that a shader can see.
     pub buffer_bytes: u64,

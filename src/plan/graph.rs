@@ -42,13 +42,8 @@ impl Plan {
 
     fn structures(&self, recipe: &Recipe) -> map::Structures {
         map::Structures {
-            mssm_levels: if recipe.mssm { self.levels } else { 0 },
-            mssm_bits: self.mssm_bits,
-            hsm_levels: if recipe.hsm {
-                map::hsm_levels(self.map)
-            } else {
-                0
-            },
+            levels: if recipe.kernels { self.levels } else { 0 },
+            bounds_bits: self.bounds_bits,
             layers: recipe.layers,
         }
     }

@@ -184,7 +184,7 @@ impl<'a> Draft<'a> {
         &self.sets
     }
 
-    /// The light with all its views. `levels`: of the MSSM that there is memory for.
+    /// The light with all its views. `levels`: see [`Plan::levels`](super::Plan).
     pub fn finish(self, index: usize, levels: u32, numbering: &mut Numbering) -> LightPlan {
         let (placed, view_first) = (self.placed, numbering.views);
         let set = |set: DraftSet| {

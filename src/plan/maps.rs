@@ -3,14 +3,27 @@
 use super::Plan;
 use super::light::Draft;
 use crate::error::{Error, Result};
+use crate::frame::{Density, Shape, map::hierarchy_shape};
 use crate::gpu::Limits;
 use crate::shared::{LEVELS_MAX, ROOT_LEVELS};
-use crate::technique::Settings;
+use crate::technique::{Hierarchy, Settings};
 
-/// [level] Of an MSSM over a map of `side` × `side` texels, from single cells to the roots of the largest kernel.
-pub(super) fn mssm_levels(side: u32) -> u32 {
+/// [level] Of a hierarchy over a map of `side` × `side` texels, from single cells to the roots of the largest kernel.
+pub(super) fn hierarchy_levels(side: u32) -> u32 {
     let covering = side.next_power_of_two().ilog2();
     (covering + 1).saturating_sub(ROOT_LEVELS).max(1)
+}
+
+/// Whether a device has images like that.
+fn fits(shape: Shape, limits: &Limits) -> bool {
+    match shape {
+        Shape::Buffer(bytes) => bytes <= limits.buffer_bytes,
+        Shape::Image { size, layers, .. } => {
+            size.0.max(size.1) <= limits.image_side
+                && layers <= limits.image_layers
+                && shape.bytes() <= limits.image_bytes
+        }
+    }
 }
 
 impl Plan {
@@ -32,30 +45,45 @@ impl Plan {
             )));
         }
         self.map = side;
-        if sets.any(|set| set.recipe.mssm) {
-            self.levels = self.fitting_levels(limits)?;
+        if sets.any(|set| set.recipe.kernels) {
+            self.fit_hierarchy(limits)?;
         }
         Ok(())
     }
 
-    /// [level] Of the MSSM that the device has room for.
-    fn fitting_levels(&self, limits: &Limits) -> Result<u32> {
-        let side = self.map;
-        let level_bytes = u64::from(side) * u64::from(side) * self.mssm_texel_bytes();
-        let fitting = (limits.image_bytes / level_bytes).min(limits.image_layers.into());
-        match mssm_levels(side).min(LEVELS_MAX).min(fitting as u32) {
-            0 => Err(Error::Unsupported(format!(
-                "an MSSM level of {level_bytes} bytes is more than the device's largest image of {} bytes; \
+    /// Finds a density and a number of levels that the device has room for: as dense as asked for, or else with nodes side by
+    /// side.
+    fn fit_hierarchy(&mut self, limits: &Limits) -> Result<()> {
+        let wanted = hierarchy_levels(self.map).min(LEVELS_MAX);
+        let shape = |density, levels| hierarchy_shape(density, self.map, levels, self.bounds_bits);
+        let fitting = |density| {
+            let all = (1..=wanted).rev();
+            all.map(move |levels| (levels, density))
+                .find(|&(levels, density)| fits(shape(density, levels), limits))
+        };
+        let [asked, sparser] = [self.density, Density::HSM].map(fitting);
+        let found = match (asked, sparser) {
+            (Some((levels, _)), Some((most, _))) if levels < most => sparser,
+            (None, sparser) => sparser,
+            (asked, _) => asked,
+        };
+        let bytes = shape(self.density, 1).bytes();
+        (self.levels, self.density) = found.ok_or_else(|| {
+            Error::Unsupported(format!(
+                "a hierarchy level of {bytes} bytes is more than the device's largest image of {} bytes; \
                  choose a smaller --map",
                 limits.image_bytes
-            ))),
-            levels => Ok(levels),
-        }
+            ))
+        })?;
+        Ok(())
     }
 
-    /// [byte] Of a pair of bounds.
-    fn mssm_texel_bytes(&self) -> u64 {
-        u64::from(self.mssm_bits / 4)
+    /// How densely it stands: as asked for, or else with nodes side by side.
+    pub(super) fn hierarchy(&self, settings: &Settings) -> Hierarchy {
+        match settings.hierarchy.density(self.map) == self.density {
+            true => settings.hierarchy,
+            false => Hierarchy::Hsm,
+        }
     }
 
     /// [dispatch] In how many rounds a list is worked off at most.

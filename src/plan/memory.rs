@@ -74,11 +74,11 @@ impl Plan {
             views: self.views().count() as u32,
             sector_tables: tables.count() as u32,
             map: self.map,
-            mssm_bits: self.mssm_bits,
+            bounds_bits: self.bounds_bits,
             levels: self.levels,
+            density: self.density,
             layers: most(|recipe| recipe.layers).unwrap_or(0),
-            hsm: self.needs(|recipe| recipe.hsm),
-            kernels: self.needs(|recipe| recipe.mssm),
+            kernels: self.needs(|recipe| recipe.kernels),
             packet_lists: self.needs(|recipe| recipe.has(Domain::PacketList)),
             pixel_lists: self.needs(|recipe| recipe.has(Domain::PixelList)),
             packet: self.packet,
@@ -151,7 +151,7 @@ impl Plan {
             true => ("--max-memory allows", ", or raise --max-memory"),
             false => ("the device has", ""),
         };
-        let halved = match name == "mssm" && self.mssm_bits > 16 {
+        let halved = match name == "hierarchy" && self.bounds_bits > 16 {
             true => ", or --mssm-bits 16",
             false => "",
         };

@@ -1,6 +1,6 @@
 //! What a plan leaves out, and why.
 
-use super::maps::mssm_levels;
+use super::maps::hierarchy_levels;
 use super::{Lighting, Omission, Plan};
 use crate::frame::{Domain, Scope, counts};
 use crate::shot::Shot;
@@ -79,7 +79,7 @@ impl Plan {
         }
         if shot.lights[index].is_point() {
             self.omit(
-                format!("{name}: mssm, kernels, packets"),
+                format!("{name}: hierarchy, kernels, packets"),
                 "the light has no extent: its shadow is hard",
             );
         }
@@ -99,9 +99,9 @@ impl Plan {
                 "the disc's rim leaves nothing of them",
             );
         }
-        if !recipe.mssm && !shot.lights[index].is_point() && near < parts {
+        if !recipe.kernels && !shot.lights[index].is_point() && near < parts {
             self.omit(
-                format!("{name}: mssm, kernels, lists"),
+                format!("{name}: hierarchy, kernels, lists"),
                 format!(
                     "{} tests single samples of the maps",
                     shot.settings.technique
@@ -115,11 +115,18 @@ impl Plan {
                 "a packet is a single pixel",
             );
         }
-        let wanted = mssm_levels(self.map);
-        if recipe.mssm && self.levels < wanted {
+        let asked = shot.settings.hierarchy;
+        if recipe.kernels && self.hierarchy(&shot.settings) != asked {
             self.omit(
-                format!("{name}: mssm levels {} to {}", self.levels, wanted - 1),
-                "the device's largest image does not hold them; larger kernels start from more roots",
+                format!("{name}: nodes of the {asked} hierarchy between those side by side"),
+                "the device's largest image does not hold them",
+            );
+        }
+        let wanted = hierarchy_levels(self.map);
+        if recipe.kernels && self.levels < wanted {
+            self.omit(
+                format!("{name}: hierarchy levels {} to {}", self.levels, wanted - 1),
+                "the device's largest buffer does not hold them; larger kernels start from more roots",
             );
         }
     }

@@ -5,13 +5,13 @@ use std::fmt::{Display, Formatter, Result};
 use super::{LightPlan, Lighting, Plan, ViewSet};
 use crate::frame::Domain;
 
-const MSSM_LEVELS: &str = "mssm levels";
+const LEVELS: &str = "hierarchy levels";
 
 /// What only the device finds out, and leaves out then.
 const ON_DEVICE: [(&str, &str); 3] = [
     ("triangles", "those that shadow nothing visible"),
     ("views", "those without receivers or without casters"),
-    (MSSM_LEVELS, "those above a view's largest kernel"),
+    (LEVELS, "those above a view's largest kernel"),
 ];
 
 /// The faces of a view, by where they look in the light's frame.
@@ -55,7 +55,7 @@ impl Display for Plan {
         let found = ON_DEVICE.into_iter();
         write_columns(
             out,
-            found.filter(|(what, _)| *what != MSSM_LEVELS || self.levels > 0),
+            found.filter(|(what, _)| *what != LEVELS || self.levels > 0),
         )
     }
 }
@@ -105,13 +105,14 @@ impl Plan {
             faces.join(", ")
         )?;
         writeln!(out, "  shadow map  {0}x{0} texels", set.settings.map)?;
-        if set.recipe.mssm {
+        if set.recipe.kernels {
             let (width, height) = self.size;
-            let levels = self.levels;
             writeln!(
                 out,
-                "  mssm        up to {levels} levels, {0}x{0} each, bounds of {1} bits",
-                self.map, self.mssm_bits
+                "  hierarchy   {}, up to {} levels, bounds of {} bits",
+                self.hierarchy(&set.settings),
+                self.levels,
+                self.bounds_bits
             )?;
             writeln!(out, "  kernels     {width}x{height}, one for each pixel")?;
         }

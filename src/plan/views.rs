@@ -21,7 +21,7 @@ pub struct MapParams {
     pub bias: f32,
     /// [scene units] Height over the light's plane up to which surfaces are the lamp's own.
     pub touch: f64,
-    /// [level] MSSM levels that there is memory for.
+    /// [level] Of the hierarchy that there is memory for.
     pub levels: u32,
 }
 

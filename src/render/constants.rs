@@ -10,6 +10,8 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("TEXTURED", plan.textured.into()),
         ("LOOP_BUDGET", plan.loop_turns),
         ("ROUNDS", plan.rounds()),
+        ("DENSE_LEVELS", plan.density.dense),
+        ("SPARSEST", plan.density.sparsest),
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
     ])

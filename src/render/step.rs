@@ -132,13 +132,9 @@ impl Recording<'_> {
             Domain::TriangleReduction => reduction(triangles),
             Domain::Pixels => return found(offset_of!(Fit, kernel_groups)),
             Domain::Packets => return found(offset_of!(Fit, classify_groups)),
-            Domain::MssmLevel => {
+            Domain::HierarchyLevel => {
                 let level = push.level as usize * size_of::<[u32; 3]>();
                 return found(offset_of!(Fit, level_groups) + level);
-            }
-            Domain::HsmLevel => {
-                let side = side.div_ceil(1 << push.level);
-                Groups::Direct(tiles((side, side)))
             }
             Domain::MapTexels => Groups::Direct(tiles((side, side))),
             Domain::Once | Domain::Instances | Domain::PacketList | Domain::PixelList => {

@@ -87,7 +87,8 @@ mod tests {
         );
         assert_eq!(
             settings.flags().join(" "),
-            "--technique pixel-contour --map 1024 --bias 0.25 --split 1 --mssm-bits 32 --hierarchical"
+            "--technique pixel-contour --map 1024 --bias 0.25 --split 1 --hierarchy graded --mssm-bits 32 \
+             --hierarchical"
         );
     }
 

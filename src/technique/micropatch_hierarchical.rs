@@ -4,16 +4,19 @@
 //! Right and wrong as `micropatch`, whose patches it finds. Occluders cannot be pruned: each of their texels is a
 //! patch, where contours have only their borders to visit.
 
-use super::{Method, Recipe, Settings};
+use super::{Hierarchy, Method, Recipe, Settings};
 
 pub struct MicropatchHierarchical;
 
 impl Method for MicropatchHierarchical {
     fn recipe(&self, _settings: &Settings) -> Recipe {
-        Recipe {
-            hsm: true,
-            ..Recipe::over_pixels("micropatch_visibility", "micropatch_tree_visibility.comp")
-        }
+        Recipe::over_pixels("micropatch_visibility", "micropatch_tree_visibility.comp")
+    }
+
+    /// The hierarchy of [DU07].
+    fn make_usual(&self, settings: &mut Settings) {
+        settings.split = 1;
+        settings.hierarchy = Hierarchy::Hsm;
     }
 
     fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {

@@ -32,7 +32,7 @@ impl Method for PacketContour {
             false => once([KERNELS, CLASSIFY, PIXELS]),
         };
         Recipe {
-            mssm: true,
+            kernels: true,
             words: 1,
             turns: TURNS_OF_WALKS,
             passes,

@@ -4,6 +4,7 @@ use super::choice::choice;
 use super::knob::{self, Access, Field, Row};
 use super::{Recipe, Technique};
 use crate::Result;
+use crate::frame::Density;
 use crate::scene::AreaLight;
 
 choice! {
@@ -23,6 +24,37 @@ choice! {
         Serial = "serial",
         /// A packet is one invocation for each pixel; all walk the same stack.
         Lanes = "lanes",
+    }
+}
+
+choice! {
+    /// How densely the nodes of the hierarchy over a shadow map stand.
+    enum Hierarchy, "hierarchy" {
+        /// Side by side [DU07]; a third of a node a texel.
+        Hsm = "hsm",
+        /// Side by side over the finest levels, at every texel of a coarse map above them [Schwarz08 §6].
+        Ysm = "ysm",
+        /// At every texel, in every level [SS07; Yang09 §4.2].
+        Mssm = "mssm",
+        /// At every texel of the first level, half a node's side apart above it.
+        Graded = "graded",
+    }
+}
+
+impl Hierarchy {
+    /// [texel] Side of the coarse map of a YSM [Schwarz08 §6].
+    const YSM_SIDE: u32 = 256;
+    /// [level] Of a graded hierarchy, the last whose nodes stand at every texel.
+    const GRADED: u32 = 1;
+
+    /// Over a map of `map` × `map` texels.
+    pub fn density(self, map: u32) -> Density {
+        match self {
+            Self::Hsm => Density::HSM,
+            Self::Ysm => Density::ysm((map / Self::YSM_SIDE).max(1).ilog2()),
+            Self::Mssm => Density::MSSM,
+            Self::Graded => Density::graded(Self::GRADED),
+        }
     }
 }
 
@@ -173,14 +205,24 @@ settings! {
         )
         .within(0, 4096, "the number of points near occluders is {}");
 
-    /// 32 or 16: bits of a bound in the MSSM. With 16 they are conservative: half the memory, wider kernels.
+    /// How densely the nodes of the hierarchy over the map stand.
+    hierarchy: Hierarchy = Hierarchy::Graded,
+        Row::value(
+            "hierarchy",
+            "NAME",
+            "How densely the hierarchy over the map stands, {}; the image is the same",
+        )
+        .depends()
+        .swept("hierarchies", "NAMES", "Values of --hierarchy [default: as the technique has it]");
+
+    /// 32 or 16: bits of a bound in the hierarchy. With 16 they are conservative: half the memory, wider kernels.
     mssm_bits: u32 = 32,
         Row::value(
             "mssm-bits",
             "BITS",
             "Bits of a depth bound in the hierarchy over the map, 32 or 16 (half its memory, the same image)",
         )
-        .one_of(&[16, 32], "a bound of the MSSM has {} bits");
+        .one_of(&[16, 32], "a bound of the hierarchy has {} bits");
 
     /// [8, 16] `Bitmask` only: the light has light_samples × light_samples samples.
     light_samples: u32 = 16,
@@ -403,7 +445,7 @@ impl Settings {
         }
         let is_read = match flag {
             "technique" => !point || self.technique == Technique::Hard,
-            "mssm-bits" => !point && Recipe::new(self).mssm,
+            "hierarchy" | "mssm-bits" => !point && Recipe::new(self).kernels,
             "counters" => true,
             _ => own.contains(&flag),
         };

@@ -4,12 +4,15 @@
 use glam::Vec2;
 
 use super::contour::ShadowMap;
-use super::mssm::Mssm;
+use super::hierarchy::Hierarchy;
 use super::receiver::{Receiver, extents};
 use crate::shared::{KERNEL_LIT, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
 
 /// Rounds of query and shrinking.
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 8;
+
+/// The rounds from here on ask for smaller nodes, unless an earlier one has changed nothing.
+const COARSE_ROUNDS: u32 = 2;
 
 /// [cell] Kernels no wider and no higher are looked at sample by sample.
 const SAMPLED_SIDE: i32 = 2;
@@ -37,7 +40,7 @@ pub fn kernel_of(
     oblique: bool,
     receiver: &Receiver,
     map: &ShadowMap,
-    mssm: &Mssm,
+    hierarchy: &Hierarchy,
 ) -> Kernel {
     let lit = Kernel {
         status: KERNEL_LIT,
@@ -46,7 +49,9 @@ pub fn kernel_of(
     // The projection's near plane is the nearest caster.
     let mut depth_max = 1.0;
     let mut found = None;
-    for _ in 0..ROUNDS {
+    let finest = u32::from(hierarchy.is_sparse());
+    let mut finer = 0;
+    for round in 1..=ROUNDS {
         if depth_max <= receiver.biased {
             return lit;
         }
@@ -54,12 +59,16 @@ pub fn kernel_of(
         if (0..2).any(|axis| cells.first[axis] > cells.last[axis]) {
             return lit;
         }
-        let range = mssm.query(cells.first, cells.last);
+        let range = hierarchy.query(cells.first, cells.last, finer);
         found = Some((cells, range));
-        if range[1] >= depth_max {
+        let stalls = range[1] >= depth_max;
+        if stalls && finer == finest {
             break;
         }
-        depth_max = range[1];
+        if stalls || round >= COARSE_ROUNDS {
+            finer = finest;
+        }
+        depth_max = depth_max.min(range[1]);
     }
     let Some((cells, range)) = found.filter(|_| depth_max > receiver.biased) else {
         return lit;

@@ -84,8 +84,8 @@ pub struct Traces {
     pub planned: ViewPlan,
     pub fit: Fit,
     pub map: Vec<f32>,
-    /// All levels, one after the other.
-    pub mssm: Vec<[f32; 2]>,
+    /// The image that holds all levels, row by row.
+    pub hierarchy: Vec<[f32; 2]>,
     pub kernels: Vec<Kernel>,
     pub packets: Vec<Packet>,
     pub pixels: Vec<u32>,
@@ -112,7 +112,7 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
         map: renderer
             .read_image("shadow_map", texels)
             .expect("shadow_map"),
-        mssm: bounds(renderer, texels * plan.levels as usize),
+        hierarchy: bounds(renderer),
         kernels: renderer.read_buffer("kernels", pixels).expect("kernels"),
         packets: listed(renderer, "packets", lists.packet_count),
         pixels: listed(renderer, "pixels", lists.pixel_count),
@@ -123,19 +123,23 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
     }
 }
 
-/// The MSSM, in however many bits.
-fn bounds(renderer: &Renderer, count: usize) -> Vec<[f32; 2]> {
+/// The hierarchy, in however many bits.
+fn bounds(renderer: &Renderer) -> Vec<[f32; 2]> {
+    let plan = renderer.plan();
+    let (width, height, layers) = plan.density.extent(plan.map, plan.levels);
+    let count = (width * height * layers) as usize;
     // Zeros and normal numbers are all that is stored.
     let widened = |half: u16| match half {
         0 => 0.0,
         half => f32::from_bits((u32::from(half) << 13) + (112 << 23)),
     };
-    match renderer.plan().mssm_bits {
+    let read = "the hierarchy can be read";
+    match plan.bounds_bits {
         16 => {
-            let halves: Vec<[u16; 2]> = renderer.read_image("mssm", count).expect("mssm");
+            let halves: Vec<[u16; 2]> = renderer.read_image("hierarchy", count).expect(read);
             halves.into_iter().map(|pair| pair.map(widened)).collect()
         }
-        _ => renderer.read_image("mssm", count).expect("mssm"),
+        _ => renderer.read_image("hierarchy", count).expect(read),
     }
 }
 

@@ -51,7 +51,7 @@ fn a_retained_frame_has_the_same_bits_and_draws_no_map() {
             "casters",
             "fit",
             "shadow_map",
-            "mssm",
+            "hierarchy",
         ];
         for name in renderer.recorded() {
             assert!(!of_map.contains(name), "{name} ran");
@@ -153,7 +153,7 @@ fn a_light_without_extent_casts_a_hard_shadow() {
             let shot = shot(scene.clone(), camera.clone(), light, 64, settings(256, 4));
             let image = render(gpu, &shot);
             for soft in [
-                "mssm",
+                "hierarchy",
                 "kernels",
                 "classify",
                 "packet_visibility",
