@@ -90,7 +90,7 @@ impl Density {
         }
         let top = (self.dense + 1) * side;
         match level.checked_sub(self.dense + self.sparsest + 1) {
-            None => (side - (2 * side >> spacing), top, 0),
+            None => (side - ((2 * side) >> spacing), top, 0),
             Some(further) => {
                 let (along, step) = (1 << self.sparsest, side >> self.sparsest);
                 let (column, row) = (further % along, further / along);
