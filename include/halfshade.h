@@ -171,6 +171,18 @@
 // `mapping`: A packet is one invocation for each pixel; all walk the same stack.
 #define HS_MAPPING_LANES 1
 
+// `hierarchy`: Side by side [DU07]; a third of a node a texel.
+#define HS_HIERARCHY_HSM 0
+
+// `hierarchy`: Side by side over the finest levels, at every texel of a coarse map above them [Schwarz08 §6].
+#define HS_HIERARCHY_YSM 1
+
+// `hierarchy`: At every texel, in every level [SS07; Yang09 §4.2].
+#define HS_HIERARCHY_MSSM 2
+
+// `hierarchy`: At every texel of the first level, half a node's side apart above it.
+#define HS_HIERARCHY_GRADED 3
+
 // `pattern`: The light's samples stand in the middles of their strata.
 #define HS_PATTERN_REGULAR 0
 
