@@ -9,6 +9,7 @@
 #include "receiver.glsl"
 #include "caster_region.glsl"
 #include "caster_position.glsl"
+#include "casting.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
@@ -124,6 +125,7 @@ void main() {
     Reach reach = Reach(vec4(NONE), NONE);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
     for (uint index = gl_GlobalInvocationID.x; index < frame.opaque_count + frame.masked_count; index += stride) {
+        if (!casts(index)) continue;
         uvec3 triangle = triangles[index];
         vec3 corner[3];
         for (int i = 0; i < 3; ++i) corner[i] = caster_position(view, triangle[i]);

@@ -64,6 +64,8 @@ pub struct Plan {
     pub textured: bool,
     /// The scene has alpha-masked triangles.
     pub masked: bool,
+    /// Some of its triangles cast no shadows.
+    pub tells_casters: bool,
     /// All passes of a frame that draws every map.
     pub graph: Graph,
     /// The shadow map of the last frame's last view is kept, and the passes that made it are left out.
@@ -92,6 +94,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     let mut plan = Plan {
         textured: !shot.scene.textures.is_empty() && (outputs.picture || shot.scene.has_masked()),
         masked: shot.scene.has_masked(),
+        tells_casters: shot.scene.tells_casters(),
         ..Plan::empty(
             (shot.width, shot.height),
             frustum.frame(shot),
@@ -188,6 +191,7 @@ impl Plan {
             packet: settings.packet,
             textured: false,
             masked: false,
+            tells_casters: false,
             graph: Graph::default(),
             retained: false,
             resources: Vec::new(),

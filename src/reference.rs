@@ -276,7 +276,7 @@ impl<'a> Tracer<'a> {
         let ray = Ray::new(start, on_light - start);
         // A lamp's own surface casts no shadow.
         let end = self.emitter.share_before(start, on_light, self.touch);
-        let opaque = |hit: &Hit| self.opaque(hit);
+        let opaque = |hit: &Hit| self.scene.casts(hit.triangle) && self.opaque(hit);
         let again = |slot| {
             self.bvh
                 .test(&ray, slot, end)

@@ -39,6 +39,8 @@ pub struct Scene {
     pub triangle_materials: Vec<u32>,
     /// Triangles `..opaque_count` are opaque, `opaque_count..` are alpha-masked.
     pub opaque_count: usize,
+    /// One per triangle: whether it casts shadows. Empty: all do.
+    pub casts: Vec<bool>,
     pub materials: Vec<Material>,
     /// Only the textures that `materials` name.
     pub textures: Vec<Texture>,
@@ -159,6 +161,16 @@ impl Scene {
     /// The material of triangle `index`.
     pub fn material_of(&self, index: usize) -> &Material {
         &self.materials[self.triangle_materials[index] as usize]
+    }
+
+    /// Whether triangle `index` casts shadows.
+    pub fn casts(&self, index: usize) -> bool {
+        self.casts.get(index).copied().unwrap_or(true)
+    }
+
+    /// Whether some triangles cast no shadows.
+    pub fn tells_casters(&self) -> bool {
+        !self.casts.is_empty()
     }
 
     /// Whether any material lets light through where its texture is transparent.

@@ -380,3 +380,32 @@ fn the_files_that_a_shot_is_read_from_are_known() {
     let scene = parse(Path::new("a.glb"), &bytes, &Default::default());
     assert!(scene.unwrap().files.is_empty());
 }
+
+/// Three nodes with a triangle each: a, below it b, and beside them one without a name.
+fn family() -> Gltf {
+    let mut gltf = Gltf::triangle();
+    gltf.json["nodes"][0]["name"] = "a".into();
+    let below = gltf.push("nodes", json!({"mesh": 0, "name": "b"}));
+    gltf.json["nodes"][0]["children"] = json!([below]);
+    gltf.node(json!({"mesh": 0}));
+    gltf
+}
+
+#[test]
+fn nodes_cast_by_name_with_all_below_them() {
+    let casts = |names: &[&str]| {
+        let casters = Some(names.iter().map(|name| name.to_string()).collect());
+        let options = LoadOptions {
+            casters,
+            ..LoadOptions::default()
+        };
+        family().load_with(&options).map(|scene| scene.casts)
+    };
+    assert!(!family().load().unwrap().tells_casters());
+    assert_eq!(casts(&[]).unwrap(), [false, false, false]);
+    assert_eq!(casts(&["a"]).unwrap(), [true, true, false]);
+    assert_eq!(casts(&["b"]).unwrap(), [false, true, false]);
+    let message = casts(&["c", "b", ""]).unwrap_err().to_string();
+    assert!(message.contains("no node of the name \"c\""), "{message}");
+    assert!(!message.contains("\"b\""), "{message}");
+}

@@ -129,6 +129,17 @@ fn a_single_light_and_optional_values() {
 }
 
 #[test]
+fn casters_are_named() {
+    let mut json = example();
+    json["casters"] = json!([]);
+    let shot = load(&json).unwrap();
+    assert!(shot.notes.is_empty() && !shot.scene.casts(0));
+    assert!(load(&example()).unwrap().scene.casts(0));
+    assert!(error(|json| json["casters"] = json!(["horse"])).contains("\"horse\""));
+    assert!(error(|json| json["casters"] = "horse".into()).contains("is not a shot file"));
+}
+
+#[test]
 fn unknown_keys_are_noted() {
     let mut json = example();
     json["name"] = "courtyard".into();

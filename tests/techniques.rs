@@ -9,6 +9,8 @@ mod artefacts;
 #[path = "techniques/goldens.rs"]
 mod goldens;
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3, Vec3};
 use halfshade::shared::{Fit, View};
 use halfshade::shot::Shot;
@@ -235,7 +237,7 @@ fn shadow_widths_are_those_of_their_twin() {
     });
 }
 
-fn check_widths(gpu: &std::sync::Arc<halfshade::gpu::Gpu>, shot: &Shot, settings: &Settings) {
+fn check_widths(gpu: &Arc<halfshade::gpu::Gpu>, shot: &Shot, settings: &Settings) {
     let mut renderer = renderer(gpu, shot);
     renderer.render_view(0).expect("a view");
     let (planned, fit) = (
@@ -293,4 +295,25 @@ fn check_widths(gpu: &std::sync::Arc<halfshade::gpu::Gpu>, shot: &Shot, settings
         partly += usize::from(wanted > 0.0 && wanted < planned.view.weight);
     }
     assert!(partly > 30, "{partly} pixels of penumbra");
+}
+
+/// What does not cast is no occluder, and what is no occluder anyway need not be told.
+#[test]
+fn only_casters_cast() {
+    let light = rectangle_light(DVec3::new(0.1, 3.0, -0.05), DVec2::splat(0.4));
+    with_gpu(|gpu| {
+        for (name, settings) in siblings() {
+            let with = |casts: &[bool]| {
+                let mut shot = plate_under(light.clone(), settings.clone());
+                Arc::make_mut(&mut shot.scene).casts = casts.into();
+                support::visibility(gpu, &shot)
+            };
+            let (all, plate) = (with(&[]), with(&[false, false, true, true]));
+            let floor = with(&[true, true, false, false]);
+            assert!(support::same_bits(&all, &plate), "{name}");
+            assert!(all.iter().any(|value| *value < 0.5), "{name}");
+            let shadowed = floor.iter().find(|value| **value < 1.0);
+            assert_eq!(shadowed, None, "{name}");
+        }
+    });
 }

@@ -167,6 +167,7 @@ unsafe fn build(info: &hs_scene_info) -> CallResult<Scene> {
         surfaces,
         materials: unsafe { materials(info) }?,
         textures: unsafe { textures(info) }?,
+        ..Triangles::default()
     })?;
     Ok(scene)
 }

@@ -142,6 +142,10 @@ pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
 
 /// What passes draw and build.
 pub const RESOURCES: &[Resource] = &[
+    Resource::copied("triangle_casts", |s| {
+        Shape::array::<u32>(s.inventory.triangles.div_ceil(32))
+            .when(s.has_views() && s.tells_casters)
+    }),
     Resource::new("caster_indices", |s| {
         Shape::Buffer(s.inventory.triangles * 12).when(s.has_views() && s.casters.are_triangles())
     }),

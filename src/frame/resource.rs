@@ -41,6 +41,8 @@ pub struct Sizes {
     pub textured: bool,
     /// The scene has alpha-masked triangles.
     pub masked: bool,
+    /// Some of its triangles cast no shadows.
+    pub tells_casters: bool,
     pub lights: u32,
     pub views: u32,
     /// Of the views' sub-lights, those with a sector table.

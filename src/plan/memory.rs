@@ -70,6 +70,7 @@ impl Plan {
             picture: self.outputs.picture,
             textured: self.textured,
             masked: self.masked,
+            tells_casters: self.tells_casters,
             lights: self.lights.len() as u32,
             views: self.views().count() as u32,
             sector_tables: tables.count() as u32,

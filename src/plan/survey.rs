@@ -138,6 +138,9 @@ pub fn survey(
     let mut near = Near::new(&placed, parts);
     for index in 0..scene.triangles.len() {
         let corners = scene.corners_around(origin, index);
+        if !scene.casts(index) {
+            continue;
+        }
         let corners = corners.map(|corner| placed.to_light(corner));
         found.touching |= placed.is_touched(&corners);
         if (found.casters && near.is_out_of(&corners)) || !may_cast(&placed, corners, lower, upper)

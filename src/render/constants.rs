@@ -14,6 +14,7 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("SPARSEST", plan.density.sparsest),
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
+        ("TELLS_CASTERS", plan.tells_casters.into()),
     ])
 }
 

@@ -126,6 +126,7 @@ fn scene_contents(shot: &Shot) -> Contents {
         ("triangles", bytes(&scene.triangles)),
         ("triangle_surfaces", bytes(&scene.triangle_materials)),
         ("triangle_planes", bytes(&planes(shot))),
+        ("triangle_casts", bytes(&bits(&scene.casts))),
         ("surfaces", bytes(&surfaces)),
         ("texcoords", bytes(&texcoords)),
         ("vertex_surfaces", bytes(&vertex_surfaces)),
@@ -140,6 +141,15 @@ fn residuals(scene: &Scene, origin: DVec3, rounded: &[[f32; 3]]) -> Vec<[f32; 3]
         (exact - origin - rounded).as_vec3().to_array()
     };
     scene.positions.iter().zip(rounded).map(residual).collect()
+}
+
+/// Bits, 32 to a word, the first at the least place.
+fn bits(flags: &[bool]) -> Vec<u32> {
+    let word = |flags: &[bool]| {
+        let bits = flags.iter().enumerate();
+        bits.fold(0, |word, (place, flag)| word | u32::from(*flag) << place)
+    };
+    flags.chunks(32).map(word).collect()
 }
 
 /// The planes of all triangles: the unit normal n of the front and n · x, worked out in f64, for positions are found from

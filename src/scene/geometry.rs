@@ -31,6 +31,8 @@ pub(super) struct Geometry {
     pub triangles: Vec<[u32; 3]>,
     /// One per triangle; None = glTF's default material.
     pub materials: Vec<Option<Index<Material>>>,
+    /// One per triangle: whether it casts shadows.
+    pub casts: Vec<bool>,
     /// How many more triangles and primitives may be read, so that neither memory nor time run away.
     triangles_left: usize,
     primitives_left: usize,
@@ -43,13 +45,14 @@ impl Geometry {
             texcoords: Vec::new(),
             triangles: Vec::new(),
             materials: Vec::new(),
+            casts: Vec::new(),
             // Vertices, at most three per triangle, are numbered with 32 bits.
             triangles_left: limits.max_triangles.min(u32::MAX as usize / 3),
             primitives_left: limits.max_primitives,
         }
     }
 
-    /// Adds one instance of a mesh.
+    /// Adds one instance of a mesh, which casts shadows or not.
     ///
     /// # Errors
     /// When the mesh is malformed, or holds more triangles than the limit leaves.

@@ -38,7 +38,7 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     let document = Document::parse(path, bytes, options)?;
     let mut notes = Notes::default();
     let mut geometry = Geometry::new(&options.limits);
-    let placed = walk(&document, options.scene)?;
+    let placed = walk(&document, options.scene, options.casters.as_deref())?;
     for place in &placed {
         let node = document.get(place.node, "node", "the node tree")?;
         if node.skin.is_some() {
@@ -47,6 +47,8 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
         }
         if let Some(mesh) = node.mesh {
             geometry.add(&document, mesh, &place.world, &mut notes)?;
+            let count = geometry.triangles.len();
+            geometry.casts.resize(count, place.casts);
         }
     }
     let mut scene = assemble(&document, geometry, &options.limits, &mut notes)?;
@@ -84,7 +86,8 @@ fn assemble<'a>(
     notes: &mut Notes,
 ) -> Result<Scene> {
     let mut materials = Materials::new(document, limits);
-    let mut triangles = geometry.triangles.into_iter().zip(geometry.materials);
+    let triangles = geometry.triangles.into_iter().zip(geometry.casts);
+    let mut triangles = triangles.zip(geometry.materials);
     let sorted = sorted(&geometry.positions, &mut triangles, |material| {
         materials.fate(material, notes)
     })?;
@@ -97,6 +100,7 @@ fn assemble<'a>(
         triangles: sorted.triangles,
         triangle_materials: sorted.materials,
         opaque_count: sorted.opaque_count,
+        casts: sorted.casts,
         materials: materials.list,
         textures: materials.textures,
         ..Scene::default()

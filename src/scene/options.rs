@@ -12,6 +12,8 @@ pub struct LoadOptions {
     pub outside_paths: bool,
     /// The caller has lights of its own: nothing is noted about those of the file.
     pub own_lights: bool,
+    /// Names of the nodes that cast shadows, each with all below it. None: all do.
+    pub casters: Option<Vec<String>>,
     pub limits: Limits,
 }
 

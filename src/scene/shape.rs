@@ -201,6 +201,14 @@ impl Shape {
 }
 
 impl Scene {
+    /// The same scene, of whose shapes only those of the given numbers cast shadows.
+    #[must_use]
+    pub fn with_casters(mut self, shapes: &[u32]) -> Self {
+        let materials = self.triangle_materials.iter();
+        self.casts = materials.map(|shape| shapes.contains(shape)).collect();
+        self
+    }
+
     /// Opaque, two-sided shapes, each of its linear colour.
     pub fn of_shapes(parts: &[(Shape, Vec3)]) -> Self {
         let mut whole = Shape::default();

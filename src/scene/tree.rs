@@ -1,5 +1,7 @@
 //! The node tree of a glTF scene, flattened.
 
+use std::collections::HashSet;
+
 use glam::DAffine3;
 use gltf::json::{Index, Node, Scene};
 
@@ -11,13 +13,20 @@ pub(super) struct Placed {
     pub node: Index<Node>,
     /// Node space to world space.
     pub world: DAffine3,
+    /// Its mesh casts shadows.
+    pub casts: bool,
 }
 
-/// All nodes of a scene (None = the file's default, else its first), parents before children.
+/// All nodes of a scene (None = the file's default, else its first), parents before children. `casters`: names of the nodes
+/// that cast shadows, each with all below it; None = all do.
 ///
 /// # Errors
-/// When the scene does not exist or its nodes do not form a tree.
-pub(super) fn walk(document: &Document, scene: Option<usize>) -> Result<Vec<Placed>> {
+/// When the scene does not exist, its nodes do not form a tree, or none of them has the name of a caster.
+pub(super) fn walk(
+    document: &Document,
+    scene: Option<usize>,
+    casters: Option<&[String]>,
+) -> Result<Vec<Placed>> {
     let root = &document.root;
     let index = match scene {
         Some(index) => index,
@@ -31,9 +40,12 @@ pub(super) fn walk(document: &Document, scene: Option<usize>) -> Result<Vec<Plac
     })?;
     let mut visited = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
-    let at_origin = |node: &Index<Node>| (*node, DAffine3::IDENTITY);
-    let mut open: Vec<_> = scene.nodes.iter().rev().map(at_origin).collect();
-    while let Some((index, parent)) = open.pop() {
+    let named: Option<HashSet<&str>> =
+        casters.map(|names| names.iter().map(String::as_str).collect());
+    let mut unknown = named.clone().unwrap_or_default();
+    let root_of_scene = |node: &Index<Node>| (*node, DAffine3::IDENTITY, named.is_none());
+    let mut open: Vec<_> = scene.nodes.iter().rev().map(root_of_scene).collect();
+    while let Some((index, parent, below_caster)) = open.pop() {
         let node = document.get(index, "node", "the node tree")?;
         if std::mem::replace(&mut visited[index.value()], true) {
             let index = index.value();
@@ -42,9 +54,30 @@ pub(super) fn walk(document: &Document, scene: Option<usize>) -> Result<Vec<Plac
             )));
         }
         let world = parent * document.transforms[index.value()];
-        placed.push(Placed { node: index, world });
+        let name = node.name.as_deref().unwrap_or_default();
+        let is_named = named.as_ref().is_some_and(|named| named.contains(name));
+        unknown.remove(name);
+        let casts = below_caster || is_named;
+        placed.push(Placed {
+            node: index,
+            world,
+            casts,
+        });
         let children = node.children.iter().flatten();
-        open.extend(children.rev().map(|child| (*child, world)));
+        open.extend(children.rev().map(|child| (*child, world, casts)));
     }
-    Ok(placed)
+    match unknown.is_empty() {
+        true => Ok(placed),
+        false => Err(document.error(no_such_nodes(unknown))),
+    }
+}
+
+/// What is wrong with names of casters.
+fn no_such_nodes(unknown: HashSet<&str>) -> String {
+    let mut names: Vec<String> = unknown.iter().map(|name| format!("{name:?}")).collect();
+    names.sort();
+    format!(
+        "has no node of the name {}, which \"casters\" asks for; give names of the scene's nodes",
+        names.join(", ")
+    )
 }

@@ -20,6 +20,8 @@ pub struct Triangles {
     pub indices: Vec<[u32; 3]>,
     /// One per triangle: index into `materials`.
     pub surfaces: Vec<u32>,
+    /// One per triangle, whether it casts shadows, or none: all do.
+    pub casts: Vec<bool>,
     /// None at all: white, opaque, seen from both sides.
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
@@ -46,7 +48,8 @@ impl Scene {
                 None => Fate::Opaque(index),
             },
         );
-        let mut fates = given.indices.iter().copied().zip(fates);
+        let casts = given.casts.iter().copied().chain(std::iter::repeat(true));
+        let mut fates = given.indices.iter().copied().zip(casts).zip(fates);
         let sorted = sorted(&positions, &mut fates, Ok)?;
         Ok(Self {
             positions,
@@ -57,6 +60,7 @@ impl Scene {
             triangles: sorted.triangles,
             triangle_materials: sorted.materials,
             opaque_count: sorted.opaque_count,
+            casts: sorted.casts,
             materials: given.materials,
             textures: given.textures,
             ..Self::default()
@@ -131,6 +135,11 @@ impl Triangles {
         if self.surfaces.len() != self.indices.len() {
             return Err("there must be one material index for each triangle".into());
         }
+        if !self.casts.is_empty() && self.casts.len() != self.indices.len() {
+            return Err(
+                "there must be a word on each triangle whether it casts shadows, or on none".into(),
+            );
+        }
         if let Some(surface) = self
             .surfaces
             .iter()
@@ -154,33 +163,40 @@ pub(super) struct Sorted {
     pub triangles: Vec<[u32; 3]>,
     pub materials: Vec<u32>,
     pub opaque_count: usize,
+    /// As [`Scene::casts`].
+    pub casts: Vec<bool>,
 }
 
-/// Leaves out triangles that have no area, and puts opaque ones first.
+/// Leaves out triangles that have no area, and puts opaque ones first. With each comes whether it casts shadows.
 ///
 /// # Errors
 /// Those of `fate`.
 pub(super) fn sorted<T>(
     positions: &[DVec3],
-    triangles: &mut dyn Iterator<Item = ([u32; 3], T)>,
+    triangles: &mut dyn Iterator<Item = (([u32; 3], bool), T)>,
     mut fate: impl FnMut(T) -> Result<Fate>,
 ) -> Result<Sorted> {
     let (mut opaque, mut masked) = (Vec::new(), Vec::new());
-    for (triangle, surface) in triangles {
+    for ((triangle, casts), surface) in triangles {
         if double_area(triangle.map(|i| positions[i as usize])) == 0.0 {
             continue;
         }
         match fate(surface)? {
-            Fate::Opaque(index) => opaque.push((triangle, index)),
-            Fate::Masked(index) => masked.push((triangle, index)),
+            Fate::Opaque(index) => opaque.push((triangle, (index, casts))),
+            Fate::Masked(index) => masked.push((triangle, (index, casts))),
             Fate::LeftOut => {}
         }
     }
     let opaque_count = opaque.len();
-    let (triangles, materials) = opaque.into_iter().chain(masked).unzip();
+    let (triangles, rest): (_, Vec<_>) = opaque.into_iter().chain(masked).unzip();
+    let (materials, casts): (_, Vec<bool>) = rest.into_iter().unzip();
     Ok(Sorted {
         triangles,
         materials,
         opaque_count,
+        casts: match casts.contains(&false) {
+            true => casts,
+            false => Vec::new(),
+        },
     })
 }

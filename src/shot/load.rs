@@ -38,6 +38,7 @@ pub struct Overrides {
 #[derive(Deserialize)]
 struct ShotFile {
     scene: String,
+    casters: Option<Vec<String>>,
     camera: Option<CameraFile>,
     light: Option<LightFile>,
     lights: Option<Vec<LightFile>>,
@@ -188,6 +189,7 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
     let folder = path.parent().unwrap_or(Path::new(""));
     let options = LoadOptions {
         own_lights: !lights.is_empty(),
+        casters: shot.casters,
         ..overrides.load_options()
     };
     let scene = gltf::load(&folder.join(shot.scene), &options)?;

@@ -192,7 +192,7 @@ pub fn content_hash(shot: &Shot) -> String {
         add(format!("{description:?}").as_bytes());
     }
     // What is small, by all its fields: the text of a number gives all its digits.
-    let small = (scene.opaque_count, &scene.materials);
+    let small = (scene.opaque_count, &scene.casts, &scene.materials);
     add(format!("{small:?}").as_bytes());
     let view = (&shot.camera, shot.width, shot.height, &shot.lights);
     add(format!("{view:?}").as_bytes());

@@ -53,6 +53,21 @@ fn square_plate_under_a_rectangle() {
 }
 
 #[test]
+fn what_does_not_cast_hides_nothing() {
+    let shot_of = |casts: [bool; 4]| {
+        let mut scene = half_plane(0.125);
+        scene.casts = casts.into();
+        shot(scene, DVec3::ZERO, rect(0.7, 0.3))
+    };
+    let all = traced(&shot_of([true; 4]), 64);
+    let plate = traced(&shot_of([false, false, true, true]), 64);
+    let floor = traced(&shot_of([true, true, false, false]), 64);
+    assert_eq!(all.visibility, plate.visibility);
+    assert!(floor.visibility.data.iter().all(|&value| value == 1.0));
+    assert!(all.visibility.data.contains(&0.0));
+}
+
+#[test]
 fn half_plane_under_a_disc() {
     let (edge, radius) = (-0.0625, 0.75);
     let disc = LightShape::Disc {
