@@ -1,8 +1,10 @@
 //! Triangles, materials, textures, lights and cameras: what a scene file holds, flattened.
 
 mod accessor;
+mod container;
 mod document;
 mod emitters;
+mod extensions;
 pub(crate) mod file;
 mod geometry;
 pub mod gltf;
@@ -10,6 +12,8 @@ mod light;
 mod material;
 mod notes;
 mod options;
+mod pose;
+mod primitive;
 mod shape;
 mod tree;
 mod triangles;
@@ -18,7 +22,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
-pub(crate) use geometry::MAX_COORDINATE;
+pub(crate) use primitive::MAX_COORDINATE;
 pub use shape::Shape;
 pub use triangles::Triangles;
 

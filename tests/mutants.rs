@@ -109,7 +109,12 @@ fn mutants_of_gltf() {
             "a JPEG",
             textured_triangle(&encode(8, 8, &texels(), image::ImageFormat::Jpeg)),
         ),
+        (
+            "a WebP",
+            textured_triangle(&encode(8, 8, &texels(), image::ImageFormat::WebP)),
+        ),
         ("a light and a camera", lit_triangle()),
+        ("skins, targets and instances", posed_triangles()),
     ];
     let path = Path::new("folder/mutant");
     for (index, (name, seed)) in seeds.iter().enumerate() {

@@ -16,9 +16,32 @@ fn error_of(bytes: &[u8]) -> String {
 
 #[test]
 fn files_that_are_no_gltf() {
-    assert!(error_of(b"").contains("is not a glTF file"));
-    assert!(error_of(b"solid cube").contains("is not a glTF file"));
-    assert!(error_of(br#"{"asset": {"version": "1.0"}}"#).contains("only 2.x"));
+    assert!(error_of(b"{").contains("is not a glTF file"));
+    for (bytes, what) in [
+        (&b""[..], "is empty"),
+        (b"solid cube", "STL"),
+        (b"\xff\xfe{\0", "UTF-16"),
+        (b"\xef\xbb\xbf <!DOCTYPE HTML>", "a web page"),
+        (b"<HTML lang=en>", "a web page"),
+        (
+            b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+            "git lfs pull",
+        ),
+        (b"Kaydara FBX Binary  \0", "FBX"),
+        (b"#usda 1.0\n", "USD"),
+        (b"PXR-USDC\0", "USD"),
+        (b"# Blender 4.2\nmtllib cube.mtl\no Cube\n", "Wavefront OBJ"),
+        (b"v 0 0 0\nv 1 0 0\n", "Wavefront OBJ"),
+        (b"PK\x03\x04", "zip"),
+        (
+            br#"{"asset": {"version": "1.0"}, "scenes": {"s": {}}}"#,
+            "only 2.x",
+        ),
+        (b"glTF\x01\0\0\0\x14\0\0\0", "version 1"),
+    ] {
+        let message = error_of(bytes);
+        assert!(message.contains(what), "{what}: {message}");
+    }
     assert!(error_of(br#"{"asset": {"version": "2.0"}}"#).contains("no scene 0"));
     let folder = tempfile::tempdir().unwrap();
     assert!(load(folder.path(), &LoadOptions::default()).is_err());
@@ -31,15 +54,8 @@ fn truncated_glbs() {
     let glb = Gltf::triangle().to_glb();
     for length in 0..glb.len() {
         let message = error_of(&glb[..length]);
-        assert!(
-            message.starts_with("test.glb: is not a"),
-            "{length}: {message}"
-        );
+        assert!(message.starts_with("test.glb: "), "{length}: {message}");
     }
-    // A length in the header that is shorter than the header.
-    let mut broken = glb;
-    broken[8..12].copy_from_slice(&3u32.to_le_bytes());
-    assert!(error_of(&broken).contains("header is broken"));
 }
 
 #[test]
@@ -122,7 +138,7 @@ fn paths_stay_in_the_folder() {
 
 #[test]
 fn required_extensions_are_named() {
-    for name in ["KHR_draco_mesh_compression", "KHR_mesh_quantization"] {
+    for name in ["KHR_draco_mesh_compression", "EXT_something"] {
         let mut gltf = Gltf::triangle();
         gltf.json["extensionsRequired"] = json!([name]);
         assert!(gltf.error().contains(name));
@@ -186,6 +202,11 @@ fn ranges_are_checked() {
     );
     let message = error(&|json| json["accessors"][0]["componentType"] = U16.into());
     assert!(message.contains("must be Vec3 of F32"), "{message}");
+    let message = error(&|json| {
+        json["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
+        json["accessors"][0]["componentType"] = 5125.into();
+    });
+    assert!(message.contains("or I16 or F32"), "{message}");
 }
 
 #[test]
@@ -307,7 +328,7 @@ fn textures_have_limits() {
     assert!(
         textured_triangle(b"GIF89a-----")
             .error()
-            .contains("neither PNG nor JPEG")
+            .contains("not in PNG, JPEG or WebP")
     );
     gltf.json["images"][0] = json!({});
     assert!(gltf.error().contains("neither a uri nor a buffer view"));

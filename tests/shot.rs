@@ -182,7 +182,7 @@ fn nonsense_is_refused() {
     assert!(error(|json| json["lights"][1]["color"] = json!([0, -1, 0])).contains("color"));
     assert!(error(|json| json["lights"][1]["intensity"] = 1e39.into()).contains("intensity"));
     assert!(error(|json| json["lights"][1]["type"] = "sphere".into()).contains("sphere"));
-    assert!(error(|json| json["lights"] = json!([])).contains("--radius"));
+    assert!(error(|json| json["lights"] = json!([])).contains("brings no area light"));
     assert!(error(|json| json["scene"] = "none.glb".into()).contains("none.glb"));
     assert!(error(|json| json["scene"] = 3.into()).contains("is not a shot file"));
     let folder = folder();

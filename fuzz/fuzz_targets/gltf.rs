@@ -12,7 +12,7 @@ use halfshade::scene::gltf::Limits;
 use halfshade::shot::Overrides;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use support::mutate::{self, Random};
-use support::{Gltf, encode, lit_triangle, textured_triangle};
+use support::{Gltf, encode, lit_triangle, posed_triangles, textured_triangle};
 
 fuzz_target!(|file: &[u8]| {
     let overrides = Overrides {
@@ -46,9 +46,11 @@ fuzz_mutator!(|data: &mut [u8], size: usize, room: usize, seed: u32| {
 /// A good file to start from.
 fn seed_file(random: &mut Random) -> Gltf {
     let texels: Vec<_> = (0..64).map(|i| [i * 4, 255 - i, i, 255]).collect();
-    match random.below(3) {
+    match random.below(5) {
         0 => textured_triangle(&encode(8, 8, &texels, image::ImageFormat::Png)),
         1 => textured_triangle(&encode(8, 8, &texels, image::ImageFormat::Jpeg)),
+        2 => textured_triangle(&encode(8, 8, &texels, image::ImageFormat::WebP)),
+        3 => posed_triangles(),
         _ => lit_triangle(),
     }
 }

@@ -1,6 +1,6 @@
 //! The flags of commands that read scenes: what a file may ask for.
 
-use halfshade::scene::gltf::Limits;
+use halfshade::scene::gltf::{Blend, Limits};
 use halfshade::shot::Overrides;
 
 use super::parse_size;
@@ -14,6 +14,12 @@ pub struct LoadArgs {
     /// Let a glTF name files outside of its folder, and file: URLs
     #[arg(long)]
     allow_outside_paths: bool,
+    /// What surfaces of alphaMode BLEND are: opaque (but where alpha is 0), left out, or cut at their alphaCutoff
+    #[arg(long, value_name = "RULE", value_enum, default_value_t = BlendArg::Opaque)]
+    blend: BlendArg,
+    /// Take materials as opaque whose texture decides where light passes and cannot be read
+    #[arg(long)]
+    allow_missing: bool,
     /// Most triangles of a scene, every instance of a mesh counted
     #[arg(long, value_name = "N", default_value_t = Limits::default().max_triangles)]
     max_triangles: usize,
@@ -31,11 +37,30 @@ pub struct LoadArgs {
     max_expansion: u64,
 }
 
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum BlendArg {
+    Opaque,
+    Ignore,
+    Mask,
+}
+
+impl From<BlendArg> for Blend {
+    fn from(blend: BlendArg) -> Self {
+        match blend {
+            BlendArg::Opaque => Self::Opaque,
+            BlendArg::Ignore => Self::Ignore,
+            BlendArg::Mask => Self::Mask,
+        }
+    }
+}
+
 impl LoadArgs {
     pub fn overrides(&self) -> Overrides {
         Overrides {
             size: self.size,
             outside_paths: self.allow_outside_paths,
+            blend: self.blend.into(),
+            allow_missing: self.allow_missing,
             limits: Limits {
                 max_triangles: self.max_triangles,
                 max_primitives: self.max_primitives,

@@ -14,6 +14,8 @@ pub(super) struct Accessor<'a> {
     dense: Option<Strided<'a>>,
     sparse: Option<Sparse<'a>>,
     component: ComponentType,
+    /// Integers stand for shares of the largest one.
+    normalized: bool,
     pub count: usize,
 }
 
@@ -33,8 +35,8 @@ struct Sparse<'a> {
 }
 
 impl<'a> Accessor<'a> {
-    /// Opens an accessor that `user` refers to and that must be of this type, with one of these
-    /// component types (integers for a vector type must be normalized).
+    /// Opens an accessor that `user` refers to and that must be of this type, with one of these component types. Integers
+    /// must be normalized where the file does not use KHR_mesh_quantization.
     ///
     /// # Errors
     /// When it is of another type or reaches beyond its buffer view.
@@ -45,15 +47,33 @@ impl<'a> Accessor<'a> {
         components: &[ComponentType],
         user: &str,
     ) -> Result<Self> {
+        let accessor = Self::open_integers(document, index, shape, components, user)?;
+        let is_float = accessor.component == ComponentType::F32;
+        if is_float || accessor.normalized || document.is_quantized() {
+            return Ok(accessor);
+        }
+        Err(document.error(format!(
+            "accessor {}: {user} must be normalized, or the file must use KHR_mesh_quantization",
+            index.value()
+        )))
+    }
+
+    /// As [`Self::open`]; integers stand for themselves.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_integers(
+        document: &'a Document,
+        index: Index<AccessorJson>,
+        shape: Type,
+        components: &[ComponentType],
+        user: &str,
+    ) -> Result<Self> {
         let json = document.get(index, "accessor", user)?;
         let name = label("accessor", index.value(), json.name.as_deref());
         let component = match json.component_type {
             Checked::Valid(GenericComponentType(component))
-                if json.type_ == Checked::Valid(shape)
-                    && components.contains(&component)
-                    && (shape == Type::Scalar
-                        || component == ComponentType::F32
-                        || json.normalized) =>
+                if json.type_ == Checked::Valid(shape) && components.contains(&component) =>
             {
                 component
             }
@@ -85,23 +105,33 @@ impl<'a> Accessor<'a> {
             dense,
             sparse,
             component,
+            normalized: json.normalized,
             count,
         })
     }
 
-    /// The components of an element; integers are scaled to [0, 1].
+    /// The components of an element; normalized integers are scaled to [0, 1] or [-1, 1].
     pub fn floats<const N: usize>(&self, index: usize) -> [f32; N] {
         let size = self.component.size();
         let Some(bytes) = self.element(index, N * size) else {
             return [0.0; N];
         };
-        std::array::from_fn(|i| float(self.component, &bytes[i * size..][..size]))
+        std::array::from_fn(|i| float(self.component, self.normalized, &bytes[i * size..][..size]))
     }
 
     /// An element that is an index.
     pub fn index(&self, index: usize) -> u32 {
         let bytes = self.element(index, self.component.size());
         bytes.map_or(0, integer)
+    }
+
+    /// The components of an element that holds indices.
+    pub fn indices<const N: usize>(&self, index: usize) -> [u32; N] {
+        let size = self.component.size();
+        let Some(bytes) = self.element(index, N * size) else {
+            return [0; N];
+        };
+        std::array::from_fn(|i| integer(&bytes[i * size..][..size]))
     }
 
     /// The bytes of an element; None = all zero.
@@ -203,10 +233,19 @@ fn integer(bytes: &[u8]) -> u32 {
         .fold(0, |value, &byte| value << 8 | u32::from(byte))
 }
 
-fn float(component: ComponentType, bytes: &[u8]) -> f32 {
-    match component {
-        ComponentType::U8 => integer(bytes) as f32 / f32::from(u8::MAX),
-        ComponentType::U16 => integer(bytes) as f32 / f32::from(u16::MAX),
-        _ => f32::from_bits(integer(bytes)),
+/// As glTF reads it [glTF 2.0 §3.11]: a normalized signed integer is at least -1.
+fn float(component: ComponentType, normalized: bool, bytes: &[u8]) -> f32 {
+    let bits = integer(bytes);
+    let (value, largest) = match component {
+        ComponentType::I8 => (f32::from(bits as u8 as i8), f32::from(i8::MAX)),
+        ComponentType::I16 => (f32::from(bits as u16 as i16), f32::from(i16::MAX)),
+        ComponentType::U8 => (bits as f32, f32::from(u8::MAX)),
+        ComponentType::U16 => (bits as f32, f32::from(u16::MAX)),
+        ComponentType::U32 => (bits as f32, u32::MAX as f32),
+        ComponentType::F32 => return f32::from_bits(bits),
+    };
+    match normalized {
+        true => (value / largest).max(-1.0),
+        false => value,
     }
 }

@@ -12,26 +12,18 @@ use base64::Engine;
 use base64::engine::DecodePaddingMode;
 use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
 use glam::{DAffine3, DQuat, DVec3};
-use gltf::binary::Glb;
 use gltf::json::root::Get;
 use gltf::json::{Buffer, Index, Root, buffer};
 
-use super::file;
+use super::container::{Bytes, check_version, split};
 use super::options::{Budget, LoadOptions};
+use super::{extensions, file};
 use crate::{Error, Result};
 
-/// The extensions whose meaning the loader knows; a file may require these and no others.
-const KNOWN_EXTENSIONS: [&str; 3] = [
-    "EXT_lights_area",
-    "KHR_lights_punctual",
-    "KHR_texture_transform",
-];
-
 /// Files in the wild omit the padding.
-const BASE64: GeneralPurpose = GeneralPurpose::new(
-    &base64::alphabet::STANDARD,
-    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
-);
+const LENIENT: GeneralPurposeConfig =
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
+const BASE64: GeneralPurpose = GeneralPurpose::new(&base64::alphabet::STANDARD, LENIENT);
 
 /// Names an object in a message: `mesh 3 ("leaf")`.
 pub(super) fn label(kind: &str, index: usize, name: Option<&str>) -> String {
@@ -43,9 +35,6 @@ pub(super) fn label(kind: &str, index: usize, name: Option<&str>) -> String {
         _ => format!("{kind} {index}"),
     }
 }
-
-/// Borrowed from the file where it holds them as they are.
-type Bytes<'a> = Cow<'a, [u8]>;
 
 /// A parsed glTF file and the bytes of its buffers, loaded when first asked for.
 pub(super) struct Document<'a> {
@@ -69,22 +58,17 @@ impl<'a> Document<'a> {
     /// When the bytes are no glTF 2.0 or the file requires an extension that is not known here.
     pub fn parse(path: &'a Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Self> {
         let (json, binary) = split(path, bytes)?;
+        check_version(path, json)?;
         let not_gltf = |e| Error::parse(path, format!("is not a glTF file: {e}"));
-        let root = Root::from_slice(&json).map_err(not_gltf)?;
-        let exact: exact::Root = serde_json::from_slice(&json).map_err(not_gltf)?;
-        if !root.asset.version.starts_with("2.") {
-            let version = &root.asset.version;
-            return Err(Error::parse(
-                path,
-                format!("has glTF version {version:?}; only 2.x can be read"),
-            ));
-        }
-        let unknown = |name: &&String| !KNOWN_EXTENSIONS.contains(&name.as_str());
+        let root = Root::from_slice(json).map_err(not_gltf)?;
+        let exact: exact::Root = serde_json::from_slice(json).map_err(not_gltf)?;
+        let unknown = |name: &&String| !extensions::may_be_required(name);
         if let Some(name) = root.extensions_required.iter().find(unknown) {
             return Err(Error::parse(
                 path,
                 format!(
-                    "requires the extension {name:?}, which is not supported; export it without"
+                    "requires the extension {name:?}, which is not supported; {}",
+                    extensions::advice(name)
                 ),
             ));
         }
@@ -102,11 +86,16 @@ impl<'a> Document<'a> {
         })
     }
 
+    /// Whether vertices may be integers.
+    pub fn is_quantized(&self) -> bool {
+        let mut used = self.root.extensions_used.iter();
+        used.any(|name| name == "KHR_mesh_quantization")
+    }
+
     /// The extensions that the file uses without requiring them and that are not known here.
     pub fn ignored_extensions(&self) -> Vec<&str> {
         let used = self.root.extensions_used.iter().map(String::as_str);
-        used.filter(|name| !KNOWN_EXTENSIONS.contains(name))
-            .collect()
+        used.filter(|name| !extensions::is_known(name)).collect()
     }
 
     /// An error about the contents of this file.
@@ -125,6 +114,11 @@ impl<'a> Document<'a> {
         Err(self.error(format!(
             "{user}: expands to far more than the file holds; if it is to be trusted, raise --max-expansion"
         )))
+    }
+
+    /// An error about another file, with who asks for it.
+    fn asked_for(&self, user: &str, error: &Error) -> Error {
+        self.error(format!("{user}: {error}"))
     }
 
     /// The object that `user` refers to.
@@ -191,16 +185,12 @@ impl<'a> Document<'a> {
     /// # Errors
     /// When the URI leaves the folder of the glTF and that is not allowed, or the data cannot be read.
     pub fn resource(&self, uri: &str, limit: u64, user: &str) -> Result<Vec<u8>> {
-        if let Some(data) = uri.strip_prefix("data:") {
-            let Some((_, data)) = data.split_once(";base64,") else {
-                return Err(self.error(format!("{user}: its data URI is not in base64")));
-            };
-            return BASE64
-                .decode(data)
-                .map_err(|e| self.error(format!("{user}: its data URI is not valid base64: {e}")));
+        if let Some(data) = data_of(uri) {
+            return inline_data(data)
+                .map_err(|what| self.error(format!("{user}: its data URI {what}")));
         }
         let path = self.resource_path(uri, user)?;
-        let bytes = file::read_at_most(&path, limit)?;
+        let bytes = file::read_at_most(&path, limit).map_err(|e| self.asked_for(user, &e))?;
         // Buffers may name the same file over and over.
         if self.read.borrow_mut().insert(path) {
             self.budget.borrow_mut().earn(bytes.len());
@@ -221,9 +211,7 @@ impl<'a> Document<'a> {
             .images
             .iter()
             .filter_map(|image| image.uri.as_ref());
-        let uris = buffers
-            .chain(images)
-            .filter(|uri| !uri.starts_with("data:"));
+        let uris = buffers.chain(images).filter(|uri| data_of(uri).is_none());
         let named: BTreeSet<PathBuf> = uris
             .filter_map(|uri| Some(self.folder().join(NamedFile::new(uri)?.path)))
             .collect();
@@ -252,7 +240,10 @@ impl<'a> Document<'a> {
                 "which is not a path below the folder of the glTF; if it is to be trusted, pass --allow-outside-paths",
             ));
         }
-        let real = |path: &Path| path.canonicalize().map_err(|e| Error::io(path, e));
+        let real = |path: &Path| {
+            let found = path.canonicalize().map_err(|e| Error::io(path, e));
+            found.map_err(|e| self.asked_for(user, &e))
+        };
         let path = real(&folder.join(&named.path))?;
         if !self.outside_paths && !path.starts_with(real(folder)?) {
             return Err(refused(
@@ -263,25 +254,30 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The JSON text and the binary chunk of a .glb, or all of a .gltf.
-fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Bytes<'a>, Option<Bytes<'a>>)> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok((bytes.into(), None));
+/// What follows the scheme of a `data:` URI, in any case.
+fn data_of(uri: &str) -> Option<&str> {
+    let scheme = uri.get(..5)?;
+    scheme.eq_ignore_ascii_case("data:").then(|| &uri[5..])
+}
+
+/// What a `data:` URI holds behind its scheme: in base64 as tools write it (with line breaks, in the alphabet of URLs), or with
+/// percent signs.
+fn inline_data(data: &str) -> std::result::Result<Vec<u8>, String> {
+    let (head, data) = data.split_once(',').ok_or("has no comma before its data")?;
+    let decoded = percent_encoding::percent_decode_str(data);
+    if !head.to_ascii_lowercase().ends_with(";base64") {
+        return Ok(decoded.collect());
     }
-    // `Glb::from_slice` subtracts the header's 12 bytes from this length without looking.
-    let length = bytes.get(8..12).and_then(|b| b.try_into().ok());
-    if length
-        .map(u32::from_le_bytes)
-        .is_none_or(|length| length < 12)
-    {
-        return Err(Error::parse(
-            path,
-            "is not a complete GLB file: its header is broken",
-        ));
-    }
-    let glb = Glb::from_slice(bytes)
-        .map_err(|e| Error::parse(path, format!("is not a complete GLB file: {e}")))?;
-    Ok((glb.json, glb.bin))
+    let standard = |byte| match byte {
+        b'-' => b'+',
+        b'_' => b'/',
+        other => other,
+    };
+    let digits = decoded.filter(|byte| !byte.is_ascii_whitespace());
+    let digits: Vec<u8> = digits.map(standard).collect();
+    BASE64
+        .decode(digits)
+        .map_err(|e| format!("is not valid base64: {e}"))
 }
 
 /// The file that a URI reference names.
@@ -306,10 +302,11 @@ impl NamedFile {
         let decoded = percent_encoding::percent_decode_str(local.unwrap_or(uri))
             .decode_utf8()
             .ok()?;
-        if decoded.contains(['\\', '\0']) {
+        if decoded.contains('\0') {
             return None;
         }
-        let path = PathBuf::from(decoded.into_owned());
+        // Tools of Windows write its separators.
+        let path = PathBuf::from(decoded.replace('\\', "/"));
         path.file_name()?;
         Some(Self {
             path,

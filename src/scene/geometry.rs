@@ -3,20 +3,14 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3, Vec2};
-use gltf::json::accessor::{ComponentType, Type};
-use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
 use gltf::json::{Index, Material, Mesh};
 
-use super::accessor::Accessor;
 use super::document::{Document, label};
-use super::material::TextureUse;
 use super::notes::Notes;
 use super::options::Limits;
+use super::pose::Pose;
+use super::primitive::{Source, note_ignored};
 use crate::Result;
-
-/// [scene units] Coordinates beyond are refused: the square of a distance must fit into f32.
-pub(crate) const MAX_COORDINATE: f64 = 1e18;
 
 /// [byte] What the loader takes for a triangle with vertices of its own.
 const TRIANGLE_BYTES: u64 = 128;
@@ -52,7 +46,12 @@ impl Geometry {
         }
     }
 
-    /// Adds one instance of a mesh, which casts shadows or not.
+    /// How many more instances of meshes there may be.
+    pub fn instances_left(&self) -> usize {
+        self.primitives_left
+    }
+
+    /// Adds all instances of a mesh.
     ///
     /// # Errors
     /// When the mesh is malformed, or holds more triangles than the limit leaves.
@@ -60,7 +59,21 @@ impl Geometry {
         &mut self,
         document: &Document,
         mesh: Index<Mesh>,
-        world: &DAffine3,
+        pose: &Pose,
+        notes: &mut Notes,
+    ) -> Result<()> {
+        for place in &pose.places {
+            self.add_instance(document, mesh, pose, place, notes)?;
+        }
+        Ok(())
+    }
+
+    fn add_instance(
+        &mut self,
+        document: &Document,
+        mesh: Index<Mesh>,
+        pose: &Pose,
+        place: &DAffine3,
         notes: &mut Notes,
     ) -> Result<()> {
         let json = document.get(mesh, "mesh", "the node tree")?;
@@ -73,18 +86,20 @@ impl Geometry {
             })?;
             Ok(())
         };
-        let count = json.primitives.len();
+        let count = json.primitives.len().max(1);
         spend(&mut self.primitives_left, count, "primitives")?;
         document.spend(count as u64 * PRIMITIVE_BYTES, &name)?;
         for primitive in &json.primitives {
             note_ignored(primitive, &name, notes);
-            let Some(source) = Source::open(document, primitive, &name, notes)? else {
+            let Some(source) = Source::open(document, primitive, pose, &name, notes)? else {
                 continue;
             };
             let count = source.triangle_count();
             spend(&mut self.triangles_left, count, "triangles")?;
-            document.spend((count as u64).saturating_mul(TRIANGLE_BYTES), &name)?;
-            self.add_primitive(document, &source, world, primitive.material)?;
+            // Targets and joints take no memory but time.
+            let work = TRIANGLE_BYTES.saturating_mul(1 + source.deformers() as u64);
+            document.spend((count as u64).saturating_mul(work), &name)?;
+            self.add_primitive(document, &source, place, primitive.material)?;
         }
         Ok(())
     }
@@ -93,19 +108,21 @@ impl Geometry {
         &mut self,
         document: &Document,
         source: &Source,
-        world: &DAffine3,
+        place: &DAffine3,
         material: Option<Index<Material>>,
     ) -> Result<()> {
-        let mirrored = world.matrix3.determinant() < 0.0;
         let mut renumbered = Renumbered::new(source);
         for triangle in 0..source.triangle_count() {
             let mut corners = source.corners(document, triangle)?;
-            if mirrored {
+            if source.is_mirrored(place, corners[0]) {
                 corners.swap(1, 2);
             }
             let mut points = [DVec3::ZERO; 3];
             for (point, &vertex) in points.iter_mut().zip(&corners) {
-                *point = source.position(document, world, vertex)?;
+                *point = match renumbered.get(vertex) {
+                    Some(known) => self.positions[known as usize],
+                    None => source.position(document, place, vertex)?,
+                };
             }
             // Left out here already, so that memory stays in proportion to the file: an accessor
             // without bytes holds any number of zeros.
@@ -135,147 +152,6 @@ impl Geometry {
 /// [scene units²] Twice the area of a triangle.
 pub(super) fn double_area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length()
-}
-
-/// One primitive of triangles, opened for reading.
-struct Source<'a> {
-    name: &'a str,
-    mode: Mode,
-    positions: Accessor<'a>,
-    indices: Option<Accessor<'a>>,
-    texcoords: Option<(Accessor<'a>, TextureUse)>,
-}
-
-impl<'a> Source<'a> {
-    /// None: the primitive holds no triangles, as noted.
-    fn open(
-        document: &'a Document,
-        primitive: &Primitive,
-        name: &'a str,
-        notes: &mut Notes,
-    ) -> Result<Option<Self>> {
-        let mode = match primitive.mode {
-            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
-                mode
-            }
-            Checked::Valid(_) => {
-                notes.add("points and lines are left out", name);
-                return Ok(None);
-            }
-            Checked::Invalid => return Err(document.error(format!("{name}: has an invalid mode"))),
-        };
-        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
-        let open = |index, shape, components: &[_], what: &str| {
-            Accessor::open(
-                document,
-                index,
-                shape,
-                components,
-                &format!("{what} of {name}"),
-            )
-        };
-        let Some(positions) = attribute(Semantic::Positions) else {
-            notes.add("a primitive without POSITION is left out", name);
-            return Ok(None);
-        };
-        let positions = open(positions, Type::Vec3, &[ComponentType::F32], "POSITION")?;
-        let integers = [ComponentType::U8, ComponentType::U16, ComponentType::U32];
-        let indices = primitive
-            .indices
-            .map(|index| open(index, Type::Scalar, &integers, "the indices"))
-            .transpose()?;
-        let mut texcoords = None;
-        if let Some(texture) = TextureUse::of(document, primitive.material, name)? {
-            match attribute(Semantic::TexCoords(texture.set)) {
-                Some(index) => {
-                    let numbers = [ComponentType::F32, ComponentType::U8, ComponentType::U16];
-                    let accessor = open(index, Type::Vec2, &numbers, "TEXCOORD")?;
-                    texcoords = Some((accessor, texture));
-                }
-                None => notes.add(
-                    "has no texture coordinates for its texture, whose first texel is taken",
-                    name,
-                ),
-            }
-        }
-        Ok(Some(Self {
-            name,
-            mode,
-            positions,
-            indices,
-            texcoords,
-        }))
-    }
-
-    fn corner_count(&self) -> usize {
-        self.indices
-            .as_ref()
-            .map_or(self.positions.count, |indices| indices.count)
-    }
-
-    fn triangle_count(&self) -> usize {
-        match self.mode {
-            Mode::TriangleStrip | Mode::TriangleFan => self.corner_count().saturating_sub(2),
-            _ => self.corner_count() / 3,
-        }
-    }
-
-    /// The vertices of a triangle, counter-clockwise.
-    fn corners(&self, document: &Document, triangle: usize) -> Result<[usize; 3]> {
-        let i = triangle;
-        let corners = match self.mode {
-            Mode::TriangleStrip => [i, i + 1 + i % 2, i + 2 - i % 2],
-            Mode::TriangleFan => [i + 1, i + 2, 0],
-            _ => [3 * i, 3 * i + 1, 3 * i + 2],
-        };
-        let Some(indices) = &self.indices else {
-            return Ok(corners);
-        };
-        let vertices = corners.map(|corner| indices.index(corner) as usize);
-        let count = self.positions.count;
-        match vertices.iter().find(|&&vertex| vertex >= count) {
-            None => Ok(vertices),
-            Some(vertex) => Err(document.error(format!(
-                "{}: the index {vertex} is out of range, it has {count} vertices",
-                self.name
-            ))),
-        }
-    }
-
-    fn position(&self, document: &Document, world: &DAffine3, vertex: usize) -> Result<DVec3> {
-        let local: [f32; 3] = self.positions.floats(vertex);
-        let position = world.transform_point3(DVec3::from_array(local.map(f64::from)));
-        // Written so that NaN fails it.
-        if position.abs().max_element() <= MAX_COORDINATE && position.is_finite() {
-            Ok(position)
-        } else {
-            Err(document.error(format!(
-                "{}: vertex {vertex} has a position that is not finite or beyond {MAX_COORDINATE:e}",
-                self.name
-            )))
-        }
-    }
-
-    fn texcoord(&self, document: &Document, vertex: usize) -> Result<Vec2> {
-        let Some((accessor, texture)) = &self.texcoords else {
-            return Ok(Vec2::ZERO);
-        };
-        if vertex >= accessor.count {
-            return Err(document.error(format!(
-                "{}: vertex {vertex} has no texture coordinates, there are only {}",
-                self.name, accessor.count
-            )));
-        }
-        let texcoord = texture.transform(Vec2::from_array(accessor.floats(vertex)));
-        if texcoord.is_finite() {
-            Ok(texcoord)
-        } else {
-            Err(document.error(format!(
-                "{}: vertex {vertex} has texture coordinates that are not finite",
-                self.name
-            )))
-        }
-    }
 }
 
 /// Which vertex of the scene a vertex of the primitive became. (Primitives often use a small part of a
@@ -310,24 +186,5 @@ impl Renumbered {
                 table.insert(vertex, new);
             }
         }
-    }
-}
-
-fn note_ignored(primitive: &Primitive, name: &str, notes: &mut Notes) {
-    if primitive
-        .targets
-        .as_ref()
-        .is_some_and(|targets| !targets.is_empty())
-    {
-        notes.add(
-            "morph targets are ignored; the mesh keeps its base shape",
-            name,
-        );
-    }
-    if primitive
-        .attributes
-        .contains_key(&Checked::Valid(Semantic::Colors(0)))
-    {
-        notes.add("vertex colours are ignored", name);
     }
 }

@@ -7,17 +7,18 @@
 
 use std::path::Path;
 
-use super::document::{Document, label};
+use super::document::Document;
 use super::emitters::Emitters;
 use super::geometry::Geometry;
 use super::material::Materials;
 use super::notes::Notes;
+use super::pose::Posing;
 use super::tree::walk;
 use super::triangles::sorted;
 use super::{Scene, file};
 use crate::Result;
 
-pub use super::options::{Limits, LoadOptions};
+pub use super::options::{Blend, Limits, LoadOptions};
 
 /// Reads one scene of a .gltf or .glb and the files beside it that it refers to.
 ///
@@ -39,24 +40,24 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     let mut notes = Notes::default();
     let mut geometry = Geometry::new(&options.limits);
     let placed = walk(&document, options.scene, options.casters.as_deref())?;
-    for place in &placed {
+    let posing = Posing::new(&document, &placed);
+    for place in placed.iter().filter(|place| place.visible) {
         let node = document.get(place.node, "node", "the node tree")?;
-        if node.skin.is_some() {
-            let name = label("node", place.node.value(), node.name.as_deref());
-            notes.add("skins are ignored; the mesh keeps its bind pose", &name);
-        }
         if let Some(mesh) = node.mesh {
-            geometry.add(&document, mesh, &place.world, &mut notes)?;
+            let pose = posing.of(place, geometry.instances_left(), &mut notes)?;
+            geometry.add(&document, mesh, &pose, &mut notes)?;
             let count = geometry.triangles.len();
             geometry.casts.resize(count, place.casts);
         }
     }
-    let mut scene = assemble(&document, geometry, &options.limits, &mut notes)?;
+    let mut scene = assemble(&document, geometry, options, &mut notes)?;
     let emitters = Emitters::new(&document, options.punctual_radius, &scene)?;
     let mut light_notes = Notes::default();
     for place in &placed {
-        let light = emitters.light(place, &mut light_notes)?;
-        scene.lights.extend(light);
+        if place.visible {
+            let light = emitters.light(place, &mut light_notes)?;
+            scene.lights.extend(light);
+        }
         scene.cameras.extend(emitters.camera(place, &mut notes)?);
     }
     if !options.own_lights {
@@ -82,10 +83,10 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
 fn assemble<'a>(
     document: &'a Document<'a>,
     geometry: Geometry,
-    limits: &Limits,
+    options: &LoadOptions,
     notes: &mut Notes,
 ) -> Result<Scene> {
-    let mut materials = Materials::new(document, limits);
+    let mut materials = Materials::new(document, options);
     let triangles = geometry.triangles.into_iter().zip(geometry.casts);
     let mut triangles = triangles.zip(geometry.materials);
     let sorted = sorted(&geometry.positions, &mut triangles, |material| {

@@ -12,7 +12,7 @@ use image::{ImageFormat, ImageReader};
 
 use super::document::{Document, label};
 use super::notes::Notes;
-use super::options::Limits;
+use super::options::{Blend, LoadOptions};
 use super::{Material, Texture, Wrap};
 use crate::{Error, Result};
 
@@ -41,7 +41,7 @@ impl TextureUse {
             return Ok(None);
         };
         let material = document.get(index, "material", user)?;
-        Ok(texture_info(document, material).map(|info| {
+        Ok(texture_info(material).map(|info| {
             let extensions = info.extensions.as_ref();
             let transform = extensions.and_then(|extensions| extensions.texture_transform.clone());
             let transform = transform.unwrap_or_default();
@@ -61,16 +61,22 @@ impl TextureUse {
     }
 }
 
-/// The base-colour texture of a material, if there is an image behind it.
-fn texture_info<'a>(document: &Document, material: &'a MaterialJson) -> Option<&'a Info> {
-    let info = material
-        .pbr_metallic_roughness
-        .base_color_texture
-        .as_ref()?;
-    // An extension for other image formats may leave the standard's own source empty.
-    let empty = |texture: &TextureJson| texture.source.value() == u32::MAX as usize;
-    let has_image = !document.root.get(info.index).is_some_and(empty);
-    has_image.then_some(info)
+/// The base-colour texture of a material.
+fn texture_info(material: &MaterialJson) -> Option<&Info> {
+    let base_color = &material.pbr_metallic_roughness;
+    base_color.base_color_texture.as_ref()
+}
+
+/// The image of a texture: in WebP where there is one [EXT_texture_webp], for who brings it means it.
+fn image_of(texture: &TextureJson) -> Option<Index<Image>> {
+    let extensions = texture.extensions.as_ref();
+    let webp = extensions.and_then(|extensions| extensions.others.get("EXT_texture_webp"));
+    let source = webp.and_then(|json| json.get("source")?.as_u64());
+    match source {
+        Some(source) => Some(Index::new(u32::try_from(source).ok()?)),
+        // An extension for other formats may leave the standard's own source empty.
+        None => (texture.source.value() != u32::MAX as usize).then_some(texture.source),
+    }
 }
 
 /// What becomes of the triangles of a material.
@@ -84,9 +90,37 @@ pub(super) enum Fate {
     LeftOut,
 }
 
+/// What a material's alpha means to shadows.
+enum Alpha {
+    Opaque,
+    /// Light passes where it is 0.
+    Blended,
+    /// Light passes where it is lower.
+    Cut(f32),
+    LeftOut,
+}
+
+/// Why there is no texture.
+enum Fault {
+    /// Flags can raise it.
+    Limit(Error),
+    Unreadable(Error),
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Unreadable(error)
+    }
+}
+
+/// [texel] Width, height, and RGBA of 8 bits each.
+type Texels = (u32, u32, Vec<u8>);
+
 /// The materials and textures that the triangles of a scene use, loaded when first asked for.
 pub(super) struct Materials<'a> {
     document: &'a Document<'a>,
+    blend: Blend,
+    allow_missing: bool,
     max_texture_side: u32,
     texels_left: u64,
     fates: HashMap<Option<usize>, Fate>,
@@ -94,25 +128,30 @@ pub(super) struct Materials<'a> {
     loaded: HashMap<(usize, [u32; 2], bool), usize>,
     pub list: Vec<Material>,
     pub textures: Vec<Texture>,
+    /// Of the texels of each.
+    least_alphas: Vec<u8>,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(document: &'a Document<'a>, limits: &Limits) -> Self {
+    pub fn new(document: &'a Document<'a>, options: &LoadOptions) -> Self {
         Self {
             document,
-            max_texture_side: limits.max_texture_side,
-            texels_left: limits.max_texels,
+            blend: options.blend,
+            allow_missing: options.allow_missing,
+            max_texture_side: options.limits.max_texture_side,
+            texels_left: options.limits.max_texels,
             fates: HashMap::new(),
             loaded: HashMap::new(),
             list: Vec::new(),
             textures: Vec::new(),
+            least_alphas: Vec::new(),
         }
     }
 
     /// Takes over a material (None = glTF's default material), unless that happened before.
     ///
     /// # Errors
-    /// When its texture cannot be read.
+    /// When its texture decides where light passes and cannot be read, or exceeds a limit.
     pub fn fate(&mut self, index: Option<Index<MaterialJson>>, notes: &mut Notes) -> Result<Fate> {
         let key = index.map(|index| index.value());
         if let Some(&fate) = self.fates.get(&key) {
@@ -136,39 +175,20 @@ impl<'a> Materials<'a> {
     fn push(&mut self, json: &MaterialJson, name: String, notes: &mut Notes) -> Result<Fate> {
         let base_color = Vec4::from(json.pbr_metallic_roughness.base_color_factor.0);
         let base_color = base_color.clamp(Vec4::ZERO, Vec4::ONE);
-        let info = texture_info(self.document, json);
-        if info.is_none() && json.pbr_metallic_roughness.base_color_texture.is_some() {
-            notes.add(
-                "its texture has no PNG or JPEG image and is left out",
-                &name,
-            );
-        }
-        let mut alpha_cutoff = None;
-        match json.alpha_mode {
-            Checked::Valid(AlphaMode::Mask) => {
-                let cutoff = json.alpha_cutoff.unwrap_or_default().0;
-                // A texture can only lower the alpha.
-                if base_color.w < cutoff {
-                    notes.add(
-                        "its alpha is below its cutoff; its triangles are left out",
-                        &name,
-                    );
-                    return Ok(Fate::LeftOut);
-                }
-                if info.is_some() && cutoff > 0.0 {
-                    alpha_cutoff = Some(cutoff);
-                }
-            }
-            Checked::Valid(AlphaMode::Blend) => {
-                notes.add("alphaMode BLEND is not supported; it is opaque", &name);
-            }
-            Checked::Valid(AlphaMode::Opaque) => {}
-            Checked::Invalid => notes.add("its alphaMode is invalid; it is opaque", &name),
-        }
-        let texture = match info {
-            Some(info) => Some(self.texture(info, &name)?),
+        let (cutoff, needed) = match self.alpha(json, base_color.w, &name, notes) {
+            Alpha::Opaque => (0.0, false),
+            Alpha::Blended => (0.5 / 255.0 * base_color.w, false),
+            Alpha::Cut(cutoff) => (cutoff, cutoff > 0.0),
+            Alpha::LeftOut => return Ok(Fate::LeftOut),
+        };
+        let texture = match texture_info(json) {
+            Some(info) => self.texture_or_note(info, &name, needed, notes)?,
             None => None,
         };
+        // Where no texel is below the cutoff there is nothing to test.
+        let least = |index: usize| f32::from(self.least_alphas[index]) / 255.0;
+        let has_holes = texture.is_some_and(|index| least(index) * base_color.w < cutoff);
+        let alpha_cutoff = has_holes.then_some(cutoff);
         let index = self.list.len() as u32;
         self.list.push(Material {
             name: json.name.clone().unwrap_or(name),
@@ -183,7 +203,78 @@ impl<'a> Materials<'a> {
         })
     }
 
-    fn texture(&mut self, info: &Info, user: &str) -> Result<usize> {
+    /// What a material's alpha means to shadows. `most`: its largest; a texture can only lower it.
+    fn alpha(&self, json: &MaterialJson, most: f32, name: &str, notes: &mut Notes) -> Alpha {
+        let cutoff = json.alpha_cutoff.unwrap_or_default().0;
+        let (alpha, note) = match (json.alpha_mode, self.blend) {
+            (Checked::Valid(AlphaMode::Mask), _) => (Alpha::Cut(cutoff), None),
+            (Checked::Valid(AlphaMode::Blend), Blend::Opaque) if most > 0.0 => (
+                Alpha::Blended,
+                Some(
+                    "alphaMode BLEND is opaque but where its alpha is 0; --blend ignore leaves it out, --blend mask \
+                     cuts it at its alphaCutoff",
+                ),
+            ),
+            (Checked::Valid(AlphaMode::Blend), Blend::Opaque) => (
+                Alpha::LeftOut,
+                Some("its alpha is 0; its triangles are left out"),
+            ),
+            (Checked::Valid(AlphaMode::Blend), Blend::Mask) => (
+                Alpha::Cut(cutoff),
+                Some("alphaMode BLEND is cut at its alphaCutoff (--blend mask)"),
+            ),
+            (Checked::Valid(AlphaMode::Blend), Blend::Ignore) => (
+                Alpha::LeftOut,
+                Some("alphaMode BLEND is left out (--blend ignore)"),
+            ),
+            (Checked::Valid(AlphaMode::Opaque), _) => (Alpha::Opaque, None),
+            (Checked::Invalid, _) => (
+                Alpha::Opaque,
+                Some("its alphaMode is invalid; it is opaque"),
+            ),
+        };
+        if let Some(note) = note {
+            notes.add(note, name);
+        }
+        match alpha {
+            Alpha::Cut(cutoff) if most < cutoff => {
+                let what = "its alpha is below its cutoff; its triangles are left out";
+                notes.add(what, name);
+                Alpha::LeftOut
+            }
+            alpha => alpha,
+        }
+    }
+
+    /// A texture, or None where it cannot be read and shadows can do without.
+    fn texture_or_note(
+        &mut self,
+        info: &Info,
+        name: &str,
+        needed: bool,
+        notes: &mut Notes,
+    ) -> Result<Option<usize>> {
+        match self.texture(info, name) {
+            Ok(index) => Ok(Some(index)),
+            Err(Fault::Limit(error)) => Err(error),
+            Err(Fault::Unreadable(error)) if needed && !self.allow_missing => {
+                Err(self.document.error(format!(
+                    "{name}: where light passes it depends on a texture that cannot be read ({error}); \
+                     repair it, or pass --allow-missing to take the material as opaque"
+                )))
+            }
+            Err(Fault::Unreadable(error)) => {
+                let what = match needed {
+                    true => "its texture cannot be read; it is opaque, in a flat colour (--allow-missing)",
+                    false => "its texture cannot be read; it has a flat colour",
+                };
+                notes.add(what, &format!("{name} ({error})"));
+                Ok(None)
+            }
+        }
+    }
+
+    fn texture(&mut self, info: &Info, user: &str) -> std::result::Result<usize, Fault> {
         let document = self.document;
         let texture = document.get(info.index, "texture", user)?;
         let sampler = match texture.sampler {
@@ -195,11 +286,15 @@ impl<'a> Materials<'a> {
             (Some(filter), _) => filter != Checked::Valid(MagFilter::Nearest),
             (None, filter) => filter != Some(Checked::Valid(MinFilter::Nearest)),
         };
-        let key = (texture.source.value(), wrap.map(|wrap| wrap as u32), linear);
+        let source = image_of(texture)
+            .ok_or_else(|| document.error("its texture has no image in PNG, JPEG or WebP"))?;
+        let key = (source.value(), wrap.map(|wrap| wrap as u32), linear);
         if let Some(&known) = self.loaded.get(&key) {
             return Ok(known);
         }
-        let (width, height, rgba) = self.image(texture.source, user)?;
+        let (width, height, rgba) = self.image(source, user)?;
+        let alphas = rgba.chunks_exact(4).map(|texel| texel[3]);
+        self.least_alphas.push(alphas.min().unwrap_or(u8::MAX));
         self.textures.push(Texture {
             width,
             height,
@@ -211,7 +306,7 @@ impl<'a> Materials<'a> {
         Ok(self.textures.len() - 1)
     }
 
-    fn image(&mut self, index: Index<Image>, user: &str) -> Result<(u32, u32, Vec<u8>)> {
+    fn image(&mut self, index: Index<Image>, user: &str) -> std::result::Result<Texels, Fault> {
         let document = self.document;
         let json = document.get(index, "image", user)?;
         let name = label("image", index.value(), json.name.as_deref());
@@ -223,35 +318,34 @@ impl<'a> Materials<'a> {
             }
             (None, Some(view)) => self.decode(document.view(view, &name)?.0, &name),
             (None, None) => {
-                Err(document.error(format!("{name}: has neither a uri nor a buffer view")))
+                Err(document.error(format!("{name}: has neither a uri nor a buffer view")))?
             }
         }
     }
 
-    fn decode(&mut self, bytes: &[u8], name: &str) -> Result<(u32, u32, Vec<u8>)> {
+    fn decode(&mut self, bytes: &[u8], name: &str) -> std::result::Result<Texels, Fault> {
         let broken = |e: image::ImageError| -> Error {
             self.document
                 .error(format!("{name}: cannot be decoded: {e}"))
         };
         let format = match image::guess_format(bytes) {
-            Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-            _ => {
-                return Err(self
-                    .document
-                    .error(format!("{name}: is neither PNG nor JPEG")));
-            }
+            Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
+            _ => Err(self
+                .document
+                .error(format!("{name}: is not in PNG, JPEG or WebP")))?,
         };
         let reader = || ImageReader::with_format(Cursor::new(bytes), format);
         let (width, height) = reader().into_dimensions().map_err(broken)?;
         let texels = u64::from(width) * u64::from(height);
         if width.max(height) > self.max_texture_side || texels > self.texels_left {
-            return Err(self.document.error(format!(
+            return Err(Fault::Limit(self.document.error(format!(
                 "{name}: its {width}×{height} texels exceed the limit on textures ({0}×{0}, {1} texels left); \
                  raise --max-texture-side or --max-texels",
                 self.max_texture_side, self.texels_left
-            )));
+            ))));
         }
-        self.document.spend(texels * 4, name)?;
+        let room = self.document.spend(texels * 4, name);
+        room.map_err(Fault::Limit)?;
         let mut limits = image::Limits::no_limits();
         // At most 16 bits for each of four channels, and as much again for the decoder.
         limits.max_alloc = Some(texels * 16 + (64 << 20));

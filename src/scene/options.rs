@@ -14,7 +14,23 @@ pub struct LoadOptions {
     pub own_lights: bool,
     /// Names of the nodes that cast shadows, each with all below it. None: all do.
     pub casters: Option<Vec<String>>,
+    /// What surfaces are that blend with what is behind them.
+    pub blend: Blend,
+    /// A material whose texture decides where light passes is opaque where that texture cannot be read.
+    pub allow_missing: bool,
     pub limits: Limits,
+}
+
+/// What materials of alphaMode BLEND are to shadows, which know no half-transparent surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Blend {
+    /// Opaque, but where the alpha of their texture is 0.
+    #[default]
+    Opaque,
+    /// Not there.
+    Ignore,
+    /// Light passes where their alpha is below their alphaCutoff (0.5 without one).
+    Mask,
 }
 
 /// What a file may ask for at most, however small it is itself.

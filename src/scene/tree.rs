@@ -15,6 +15,8 @@ pub(super) struct Placed {
     pub world: DAffine3,
     /// Its mesh casts shadows.
     pub casts: bool,
+    /// Neither it nor a node above it is hidden [KHR_node_visibility].
+    pub visible: bool,
 }
 
 /// All nodes of a scene (None = the file's default, else its first), parents before children. `casters`: names of the nodes
@@ -43,9 +45,9 @@ pub(super) fn walk(
     let named: Option<HashSet<&str>> =
         casters.map(|names| names.iter().map(String::as_str).collect());
     let mut unknown = named.clone().unwrap_or_default();
-    let root_of_scene = |node: &Index<Node>| (*node, DAffine3::IDENTITY, named.is_none());
+    let root_of_scene = |node: &Index<Node>| (*node, DAffine3::IDENTITY, named.is_none(), true);
     let mut open: Vec<_> = scene.nodes.iter().rev().map(root_of_scene).collect();
-    while let Some((index, parent, below_caster)) = open.pop() {
+    while let Some((index, parent, below_caster, below_visible)) = open.pop() {
         let node = document.get(index, "node", "the node tree")?;
         if std::mem::replace(&mut visited[index.value()], true) {
             let index = index.value();
@@ -58,18 +60,27 @@ pub(super) fn walk(
         let is_named = named.as_ref().is_some_and(|named| named.contains(name));
         unknown.remove(name);
         let casts = below_caster || is_named;
+        let visible = below_visible && !is_hidden(node);
         placed.push(Placed {
             node: index,
             world,
             casts,
+            visible,
         });
         let children = node.children.iter().flatten();
-        open.extend(children.rev().map(|child| (*child, world, casts)));
+        open.extend(children.rev().map(|child| (*child, world, casts, visible)));
     }
     match unknown.is_empty() {
         true => Ok(placed),
         false => Err(document.error(no_such_nodes(unknown))),
     }
+}
+
+/// Whether a node hides itself and all below it.
+fn is_hidden(node: &Node) -> bool {
+    let extensions = node.extensions.as_ref();
+    let visibility = extensions.and_then(|extensions| extensions.others.get("KHR_node_visibility"));
+    visibility.and_then(|json| json.get("visible")?.as_bool()) == Some(false)
 }
 
 /// What is wrong with names of casters.

@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::geometry::{MAX_COORDINATE, double_area};
+use super::geometry::double_area;
 use super::material::Fate;
+use super::primitive::MAX_COORDINATE;
 use super::{Material, Scene, Texture};
 use crate::{Error, Result};
 

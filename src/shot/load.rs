@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::{MAX_SIZE, Settings, Shot};
-use crate::scene::gltf::{self, Limits, LoadOptions};
+use crate::scene::gltf::{self, Blend, Limits, LoadOptions};
 use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, Scene, file};
 use crate::{Error, Result};
 
@@ -31,6 +31,10 @@ pub struct Overrides {
     pub camera_index: Option<usize>,
     /// A glTF may name files outside of its own folder.
     pub outside_paths: bool,
+    /// What surfaces of a glTF are that blend with what is behind them.
+    pub blend: Blend,
+    /// A glTF's materials whose texture decides where light passes are opaque where it cannot be read.
+    pub allow_missing: bool,
     /// What a glTF may ask for at most.
     pub limits: Limits,
 }
@@ -144,6 +148,8 @@ impl Overrides {
             scene: self.scene_index,
             punctual_radius: self.radius,
             outside_paths: self.outside_paths,
+            blend: self.blend,
+            allow_missing: self.allow_missing,
             limits: self.limits.clone(),
             ..LoadOptions::default()
         }
@@ -282,10 +288,12 @@ impl Draft {
             lights = scene.lights.clone();
         }
         if lights.is_empty() {
+            let notes = noted(&scene);
             return Err(Error::parse(
                 path,
-                "brings no area light; write a shot file with \"scene\", \"camera\" and \"lights\", or, if \
-                 the scene has point or spot lights, pass --radius to make them discs",
+                format!(
+                    "brings no area light; write a shot file with \"scene\", \"camera\" and \"lights\"{notes}"
+                ),
             ));
         }
         let aspect = camera.aspect.filter(|aspect| *aspect > 0.0).unwrap_or(1.0);
@@ -312,6 +320,15 @@ impl Draft {
     }
 }
 
+/// What became of the lights and cameras that a scene has, for an error.
+fn noted(scene: &Scene) -> String {
+    scene
+        .notes
+        .iter()
+        .map(|note| format!(" ({note})"))
+        .collect()
+}
+
 fn scene_camera(scene: &Scene, index: Option<usize>) -> Result<Camera, String> {
     let count = scene.cameras.len();
     match (scene.cameras.get(index.unwrap_or(0)), index) {
@@ -319,9 +336,12 @@ fn scene_camera(scene: &Scene, index: Option<usize>) -> Result<Camera, String> {
         (None, Some(index)) if count > 0 => Err(format!(
             "has no camera {index}; it holds {count} camera(s), counted from 0"
         )),
-        _ => Err(
-            "brings no camera; write a shot file with \"scene\", \"camera\" and \"lights\"".into(),
-        ),
+        _ => {
+            let notes = noted(scene);
+            Err(format!(
+                "brings no camera; write a shot file with \"scene\", \"camera\" and \"lights\"{notes}"
+            ))
+        }
     }
 }
 

@@ -292,7 +292,7 @@ fn the_command_lists_refuses_and_measures() {
     ]);
     assert_eq!(code, Some(0), "{err}");
     assert!(
-        out.contains("missing    the YSM") && out.contains("verdict: "),
+        out.contains("run here   one hierarchy") && out.contains("verdict: "),
         "{out}"
     );
     for ending in ["csv", "json", "svg"] {

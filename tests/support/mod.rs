@@ -260,6 +260,43 @@ pub fn lit_triangle() -> Gltf {
     gltf
 }
 
+/// A skinned, morphing triangle and instances of a quantized one, some of them hidden.
+pub fn posed_triangles() -> Gltf {
+    let mut gltf = Gltf::new();
+    let joints = gltf.accessor(&[0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0], U8, "VEC4", 3);
+    let weights = gltf.accessor(&bytes_of(&[0.5; 12]), F32, "VEC4", 3);
+    let moved = gltf.positions(&[[0.0, 0.0, 0.5]; 3]);
+    let position = gltf.positions(&SQUARE[..3]);
+    gltf.mesh(json!({
+        "attributes": {"POSITION": position, "JOINTS_0": joints, "WEIGHTS_0": weights},
+        "targets": [{"POSITION": moved}],
+    }));
+    gltf.json["meshes"][0]["weights"] = json!([0.5]);
+    gltf.node(json!({"children": [2]}));
+    gltf.push("nodes", json!({"translation": [0, 1, 0]}));
+    let identity: [f32; 16] = std::array::from_fn(|i| f32::from(u8::from(i % 5 == 0)));
+    let inverse = gltf.accessor(&bytes_of(&[identity; 2].concat()), F32, "MAT4", 2);
+    gltf.json["skins"] = json!([{"joints": [1, 2], "inverseBindMatrices": inverse}]);
+    gltf.json["nodes"][0]["skin"] = 0.into();
+    let quantized = gltf.accessor(&[0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0, 0], U8, "VEC3", 3);
+    let view = gltf.json["accessors"][quantized]["bufferView"]
+        .as_u64()
+        .unwrap() as usize;
+    gltf.json["bufferViews"][view]["byteStride"] = 4.into();
+    gltf.mesh(json!({"attributes": {"POSITION": quantized}}));
+    let translation = gltf.positions(&[[2.0, 0.0, 0.0], [4.0, 0.0, 0.0]]);
+    let rotation = gltf.accessor(&bytes_of(&[0.0, 0.0, 0.0, 1.0].repeat(2)), F32, "VEC4", 2);
+    let attributes = json!({"TRANSLATION": translation, "ROTATION": rotation});
+    gltf.json["nodes"][3]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+    gltf.node(json!({"mesh": 1, "extensions": {"KHR_node_visibility": {"visible": false}}}));
+    gltf.json["extensionsUsed"] = json!([
+        "EXT_mesh_gpu_instancing",
+        "KHR_mesh_quantization",
+        "KHR_node_visibility"
+    ]);
+    gltf
+}
+
 /// The corners of a unit square, in the order of a strip.
 pub const SQUARE: [[f32; 3]; 4] = [
     [0.0, 0.0, 0.0],
