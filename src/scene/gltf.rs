@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use super::document::Document;
+use super::document::{Document, label};
 use super::emitters::Emitters;
 use super::geometry::Geometry;
 use super::material::Materials;
@@ -62,6 +62,13 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     }
     if !options.own_lights {
         notes.append(light_notes);
+    }
+    if let Some(animation) = document.root.animations.first() {
+        let name = label("animation", 0, animation.name.as_deref());
+        notes.add(
+            "animations are not played; the scene stands as it is stored",
+            &name,
+        );
     }
     let ignored = document.ignored_extensions();
     if !ignored.is_empty() {
