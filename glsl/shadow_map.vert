@@ -1,9 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A sub-light's shadow map, reverse-Z without a far plane: d = near / z.
+// A sub-light's shadow map, reverse-Z without a far plane: d = near / z; or 1 − d, of which the test keeps the farthest.
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "caster_position.glsl"
+
+layout(constant_id = 48) const bool BOTTOMS = false;  // the farthest back faces are kept
 
 readonly BUFFER(views);
 readonly BUFFER(fits);
@@ -18,7 +20,8 @@ void main() {
     vec3 p = caster_position(view, gl_VertexIndex);
     // Sample (i, j) is a texel's centre, at window position (i + ½, j + ½).
     vec2 window = fits[push.index].focal * p.xy + (fits[push.index].center + 0.5) * p.z;
-    gl_Position = vec4(window * (2.0 / float(view.map_size)) - p.z, fits[push.index].near, p.z);
+    float depth = BOTTOMS ? p.z - fits[push.index].near : fits[push.index].near;
+    gl_Position = vec4(window * (2.0 / float(view.map_size)) - p.z, depth, p.z);
     uv = TEXTURED ? texcoords[gl_VertexIndex] : vec2(0.0);
     surface_index = TEXTURED ? vertex_surfaces[gl_VertexIndex] : 0u;
 }

@@ -159,6 +159,9 @@
 // `technique`: A single light sample and the width of its shadow [Kirsch03].
 #define HS_TECHNIQUE_SHADOW_WIDTH 9
 
+// `technique`: Micropatches scattered into a soft shadow map [Atty06].
+#define HS_TECHNIQUE_OCCLUDER_DRIVEN 10
+
 // `leaf`: A packet whose pixels disagree is worked off pixel by pixel [Yang09 §4.1].
 #define HS_LEAF_REPROCESS 0
 
@@ -203,6 +206,12 @@
 
 // `neighbours`: From the nearest texel that nothing hides, found by jump flooding.
 #define HS_NEIGHBOURS_FLOOD 2
+
+// `accumulate`: In 32 bits.
+#define HS_ACCUMULATE_FP32 0
+
+// `accumulate`: In 16 bits, which lose small shares [Atty06 app. A].
+#define HS_ACCUMULATE_FP16 1
 
 // A device and its objects' common ground. Opaque.
 typedef struct hs_context hs_context;

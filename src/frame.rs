@@ -14,7 +14,7 @@ mod resource;
 
 pub use graph::{Graph, Scope, Step, counts};
 pub use hierarchy::Density;
-pub use pass::{Domain, Drawn, Lent, Pass, Target, Work};
+pub use pass::{Domain, Drawn, Extent, Lent, Pass, Target, Work};
 pub use resource::{Inventory, Resource, Shape, Sizes};
 
 /// Where the visible surface comes from.

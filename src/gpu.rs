@@ -29,7 +29,7 @@ pub use host_device::{Enabled, HostDevice};
 pub use memory::{Buffer, Image, ImageKind};
 pub use pass::{Bound, ComputePass, GraphicsPass, Sources};
 pub use physical::{DeviceInfo, list_devices};
-pub use pipeline::GraphicsState;
+pub use pipeline::{Blend, GraphicsState};
 pub use recorder::{Recorder, Timings};
 pub use requirements::{FORMATS, Limits, QUEUE_FLAGS, lacking};
 pub use resources::{Resource, Resources};

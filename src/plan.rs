@@ -10,6 +10,7 @@ mod maps;
 mod memory;
 mod notes;
 mod omissions;
+mod patches;
 mod survey;
 mod text;
 mod views;

@@ -16,6 +16,7 @@ mod depth_peeling;
 mod hard;
 mod micropatch;
 mod micropatch_hierarchical;
+mod occluder_driven;
 mod packet_contour;
 mod pcss;
 mod pixel_contour;
@@ -23,14 +24,16 @@ mod reference_maps;
 mod shadow_width;
 
 use crate::frame::kernel::{CLASSIFY, KERNELS};
-use crate::frame::{Domain, Pass, Resource};
+use crate::frame::{Domain, Pass, Resource, Work};
 use crate::scene::AreaLight;
+use crate::shared::FRONT_REACH;
 use crate::sub_light::{self, Part};
 
 pub use choice::Choice;
 pub use knob::{Row, SweepFlag};
+pub use reference_maps::POINT_REACH;
 pub use settings::{
-    Hierarchy, KNOBS, Knob, Leaf, Mapping, Neighbours, Occluders, Pattern, Settings,
+    Accumulate, Hierarchy, KNOBS, Knob, Leaf, Mapping, Neighbours, Occluders, Pattern, Settings,
 };
 
 /// Registers techniques, in the order of their numbers in the C library: name of the variant, name for people, and what
@@ -76,6 +79,8 @@ techniques! {
     ReferenceMaps = "reference-maps", reference_maps::ReferenceMaps;
     /// A single light sample and the width of its shadow [Kirsch03].
     ShadowWidth = "shadow-width", shadow_width::ShadowWidth;
+    /// Micropatches scattered into a soft shadow map [Atty06].
+    OccluderDriven = "occluder-driven", occluder_driven::OccluderDriven;
 }
 
 /// What a technique's file says of it. What it leaves out is as for a rival with a single view of kernels.
@@ -115,6 +120,11 @@ pub trait Method: Sync {
         sub_light::parts(light, settings.split)
     }
 
+    /// Tangent up to which a view's front face holds receivers; side faces hold the rest.
+    fn reach(&self) -> f32 {
+        FRONT_REACH
+    }
+
     /// Whether points of the light cast its shadows, hard ones.
     fn samples_points(&self) -> bool {
         false
@@ -147,7 +157,7 @@ pub struct Recipe {
     /// What runs in each view, between its shadow map and the back, each with the level that it makes.
     pub passes: Vec<(Pass, u32)>,
     /// What the technique has for itself.
-    pub resources: &'static [Resource],
+    pub resources: Vec<Resource>,
 }
 
 impl Recipe {
@@ -174,6 +184,12 @@ impl Recipe {
             passes: once([Pass::dispatch(name, shader, Domain::Pixels)]),
             ..Self::default()
         }
+    }
+
+    /// Whether it draws geometry beside the shadow map.
+    pub fn redraws(&self) -> bool {
+        let draws = |(pass, _): &(Pass, u32)| matches!(pass.work, Work::Draw { what, .. } if what.is_geometry());
+        self.layers > 0 || self.passes.iter().any(draws)
     }
 
     /// Whether it works off lists of packets or pixels.

@@ -13,3 +13,4 @@ pub mod radial;
 pub mod receiver;
 pub mod resolve;
 pub mod shadow_width;
+pub mod soft_shadow_map;

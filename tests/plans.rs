@@ -19,6 +19,7 @@ const LIMITS: Limits = Limits {
     memory_bytes: 1 << 33,
     allowed_bytes: u64::MAX,
     storage_alignment: 16,
+    adds_floats: true,
     loop_turns: 60000,
 };
 

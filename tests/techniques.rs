@@ -8,6 +8,8 @@ mod support;
 mod artefacts;
 #[path = "techniques/goldens.rs"]
 mod goldens;
+#[path = "techniques/scattered.rs"]
+mod scattered;
 
 use std::sync::Arc;
 
@@ -81,6 +83,21 @@ fn siblings() -> Vec<(&'static str, Settings)> {
             Settings {
                 neighbours: Neighbours::Three,
                 ..usual(Technique::ShadowWidth)
+            },
+        ),
+        ("occluder-driven", usual(Technique::OccluderDriven)),
+        (
+            "occluder-driven two-sided",
+            Settings {
+                two_sided: true,
+                ..usual(Technique::OccluderDriven)
+            },
+        ),
+        (
+            "occluder-driven with bottoms",
+            Settings {
+                bottom_patches: true,
+                ..usual(Technique::OccluderDriven)
             },
         ),
         ("hard", usual(Technique::Hard)),
@@ -310,7 +327,9 @@ fn only_casters_cast() {
             };
             let (all, plate) = (with(&[]), with(&[false, false, true, true]));
             let floor = with(&[true, true, false, false]);
-            assert!(support::same_bits(&all, &plate), "{name}");
+            // Where receivers have a map of their own, the one without casters is biased.
+            let difference = support::largest_difference(&all, &plate);
+            assert!(difference < 1e-4, "{name}: {difference}");
             assert!(all.iter().any(|value| *value < 0.5), "{name}");
             let shadowed = floor.iter().find(|value| **value < 1.0);
             assert_eq!(shadowed, None, "{name}");

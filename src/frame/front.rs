@@ -1,9 +1,9 @@
 //! The front: the visible surface of a scene that is drawn, or of a host's images.
 
-use super::pass::{Domain, Drawn, Lent, Pass, Target, Work};
+use super::pass::{Domain, Drawn, Extent, Lent, Pass, Target, Work};
 use super::resource::{Resource, Shape};
 use super::{Casters, Front, Surface};
-use crate::gpu::ImageKind;
+use crate::gpu::{Blend, ImageKind};
 use crate::shared;
 
 /// Position, normal and colour of what each pixel sees.
@@ -15,7 +15,9 @@ const GBUFFER: Pass = Pass::new(
         what: Drawn::Surface,
         into: Target::Images {
             colors: &["position_world", "normal_world", "albedo"],
-            depth: "camera_depth",
+            depth: Some("camera_depth"),
+            extent: Extent::Image,
+            blend: Blend::Replace,
         },
     },
 );

@@ -1,6 +1,6 @@
 //! A view's shadow map, fitted to what can cast on what is visible, and the structures over it.
 
-use super::pass::{Domain, Drawn, Lent, Pass, Target, Work};
+use super::pass::{Domain, Drawn, Lent, Pass, Work};
 use super::resource::{Resource, Shape};
 use super::{Casters, Density};
 use crate::gpu::ImageKind;
@@ -82,14 +82,7 @@ const fn drawn(
     fragment: Option<&'static str>,
     what: Drawn,
 ) -> Pass {
-    let into = Target::Map;
-    let work = Work::Draw {
-        vertex,
-        fragment,
-        what,
-        into,
-    };
-    Pass::new(name, work).lasting()
+    Pass::depths(name, (vertex, fragment), what, "shadow_map", MARGIN).lasting()
 }
 
 /// What a technique reads of a view's shadow map.

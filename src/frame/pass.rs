@@ -1,5 +1,7 @@
 //! A pass: what is recorded under one name.
 
+use crate::gpu::Blend;
+
 /// A pass as its producer declares it. What it computes stands at the head of its shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pass {
@@ -61,6 +63,8 @@ pub enum Domain {
     PixelList,
     /// The nodes of a level of the hierarchy over the map, if the view needs it.
     HierarchyLevel,
+    /// The nodes of a level of a pyramid over a map of the view, from 1 up.
+    PyramidLevel,
     /// All texels of the view's shadow map.
     MapTexels,
 }
@@ -76,20 +80,38 @@ pub enum Drawn {
     ByHost,
     /// A triangle that covers the image.
     WholeImage,
+    /// A rectangle for each texel of the view's map: an instance of six vertices.
+    Texels,
+}
+
+impl Drawn {
+    /// Whether it is triangles of the scene.
+    pub const fn is_geometry(self) -> bool {
+        matches!(self, Self::Surface | Self::Casters { .. } | Self::ByHost)
+    }
 }
 
 /// What is drawn into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
-    /// Images of the frame: colours, and the depth.
+    /// Images by name, all of the same extent.
     Images {
         colors: &'static [&'static str],
-        depth: &'static str,
+        depth: Option<&'static str>,
+        extent: Extent,
+        blend: Blend,
     },
-    /// The view's shadow map, but for its margin.
-    Map,
     /// The image that a host lends for the result.
     Lent,
+}
+
+/// How much of an image is drawn to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Extent {
+    /// All of it.
+    Image,
+    /// As much as the view's map has of it, from its first texel on, but for a margin [texel] on all sides.
+    Map { margin: u32 },
 }
 
 /// What a host lends to a pass.
@@ -117,6 +139,29 @@ impl Pass {
 
     pub const fn dispatch(name: &'static str, shader: &'static str, over: Domain) -> Self {
         Self::new(name, Work::Dispatch { shader, over })
+    }
+
+    /// A draw of depths into an image as large as the view's map, but for a margin [texel].
+    pub const fn depths(
+        name: &'static str,
+        (vertex, fragment): (&'static str, Option<&'static str>),
+        what: Drawn,
+        depth: &'static str,
+        margin: u32,
+    ) -> Self {
+        let into = Target::Images {
+            colors: &[],
+            depth: Some(depth),
+            extent: Extent::Map { margin },
+            blend: Blend::Replace,
+        };
+        let work = Work::Draw {
+            vertex,
+            fragment,
+            what,
+            into,
+        };
+        Self::new(name, work)
     }
 
     /// With these constants as well.

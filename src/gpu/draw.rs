@@ -9,8 +9,12 @@ use crate::shared::Push;
 
 /// What to draw.
 pub enum Draw<'a> {
-    /// [vertex] Without vertex input.
-    Vertices(u32),
+    /// Without vertex input.
+    Vertices {
+        /// [vertex]
+        count: u32,
+        instances: u32,
+    },
     /// A VkDrawIndexedIndirectCommand at a byte offset, with the index buffer.
     Indexed {
         indices: &'a Buffer,
@@ -106,7 +110,9 @@ pub(super) fn record_draw(
     // SAFETY: recording inside rendering; the buffers are alive until submission ends.
     unsafe {
         match draw {
-            Draw::Vertices(count) => device.cmd_draw(commands, count, 1, 0, 0),
+            Draw::Vertices { count, instances } => {
+                device.cmd_draw(commands, count, instances, 0, 0);
+            }
             Draw::Indexed {
                 indices,
                 command: (buffer, offset),

@@ -36,6 +36,10 @@ pub enum ImageKind {
     Bounds,
     /// Likewise RG16F.
     Bounds16,
+    /// R32F, whose draws add up, sampled.
+    Sums,
+    /// Likewise R16F.
+    Sums16,
 }
 
 impl ImageKind {
@@ -46,13 +50,16 @@ impl ImageKind {
             Self::Color => vk::Format::R8G8B8A8_UNORM,
             Self::Bounds => vk::Format::R32G32_SFLOAT,
             Self::Bounds16 => vk::Format::R16G16_SFLOAT,
+            Self::Sums => vk::Format::R32_SFLOAT,
+            Self::Sums16 => vk::Format::R16_SFLOAT,
         }
     }
 
     /// [byte]
     pub fn texel_bytes(self) -> u64 {
         match self {
-            Self::Depth | Self::Layers | Self::Color | Self::Bounds16 => 4,
+            Self::Sums16 => 2,
+            Self::Depth | Self::Layers | Self::Color | Self::Bounds16 | Self::Sums => 4,
             Self::Bounds => 8,
             Self::Vector => 16,
         }
@@ -67,7 +74,7 @@ impl ImageKind {
         let own = match self {
             Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::Vector => vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE,
-            Self::Color => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+            Self::Color | Self::Sums | Self::Sums16 => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             Self::Layers => vk::ImageUsageFlags::empty(),
             Self::Bounds | Self::Bounds16 => vk::ImageUsageFlags::STORAGE,
         };

@@ -8,12 +8,22 @@ use super::memory::ImageKind;
 use super::shader::{Constants, Shader};
 use crate::error::Result;
 
+/// What becomes of a colour where there is one already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Blend {
+    /// The later one stays.
+    Replace,
+    /// They are added, in the order of what is drawn.
+    Add,
+}
+
 /// The fixed part of a graphics pipeline. Triangles are filled and not culled; depth is reverse-Z.
 pub struct GraphicsState<'a> {
     pub vertex: &'a str,
     /// None: only depth is written.
     pub fragment: Option<&'a str>,
     pub colors: &'a [vk::Format],
+    pub blend: Blend,
     /// Whether depth is drawn to.
     pub depth: bool,
 }
@@ -88,6 +98,9 @@ pub(super) fn create_graphics_pipeline(
         .depth_compare_op(vk::CompareOp::GREATER);
     let attachments = vec![
         vk::PipelineColorBlendAttachmentState::default()
+            .blend_enable(state.blend == Blend::Add)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE)
             .color_write_mask(vk::ColorComponentFlags::RGBA);
         state.colors.len()
     ];

@@ -22,6 +22,8 @@ pub struct Limits {
     pub allowed_bytes: u64,
     /// [byte] What offsets of storage buffers are multiples of.
     pub storage_alignment: u64,
+    /// Whether draws into R32_SFLOAT can add up.
+    pub adds_floats: bool,
     /// [turn] Loop turns after which the driver ends all loops of an invocation, whatever their conditions.
     pub loop_turns: u32,
 }
@@ -161,11 +163,20 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
             .unwrap_or(0),
         allowed_bytes: u64::MAX,
         storage_alignment: properties.limits.min_storage_buffer_offset_alignment.max(1),
+        adds_floats: adds_floats(instance, device),
         loop_turns: match driver {
             vk::DriverId::MESA_LLVMPIPE => LAVAPIPE_LOOP_TURNS,
             _ => u32::MAX,
         },
     }
+}
+
+fn adds_floats(instance: &ash::Instance, device: vk::PhysicalDevice) -> bool {
+    let format = vk::Format::R32_SFLOAT;
+    // SAFETY: the device was enumerated from this instance.
+    let found = unsafe { instance.get_physical_device_format_properties(device, format) };
+    let needed = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+    found.optimal_tiling_features.contains(needed)
 }
 
 /// The names of everything required that the device lacks; empty = it can run the engine.

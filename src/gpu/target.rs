@@ -3,7 +3,7 @@
 use ash::vk;
 
 /// An image that can be drawn to.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Target {
     pub(super) view: vk::ImageView,
     pub(super) layout: vk::ImageLayout,

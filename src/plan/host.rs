@@ -50,12 +50,13 @@ impl HostFrame {
                 "meshes, vertices and triangles are at most {most} each"
             )));
         }
-        let peeled = Recipe::new(&self.settings.of_light(&self.light)).layers > 0;
-        let redrawn = matches!(self.casters, Casters::DrawnByHost | Casters::Maps);
-        if peeled && redrawn {
-            return Err(Error::Unsupported(
-                "several layers need casters that the library draws; give meshes, or a single layer".into(),
-            ));
+        let redrawn = Recipe::new(&self.settings.of_light(&self.light)).redraws();
+        if redrawn && !self.casters.are_triangles() {
+            return Err(Error::Unsupported(format!(
+                "{} with these settings needs geometry that the library draws; give meshes, or choose a single layer or \
+                 another technique",
+                self.settings.technique
+            )));
         }
         if self.side_faces && self.casters == Casters::Maps {
             return Err(Error::Unsupported(
@@ -85,6 +86,7 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     };
     let found = LightCoverage {
         receivers: true,
+        receiver_bounds: (DVec3::NEG_INFINITY, DVec3::INFINITY),
         casters: true,
         tangents: [if host.side_faces { f64::INFINITY } else { 0.0 }; 4],
         near: Vec::new(),

@@ -7,15 +7,10 @@ use glam::{DVec2, DVec3};
 use super::survey::LightCoverage;
 use super::views::{self, MapParams, ViewPose};
 use crate::scene::AreaLight;
-use crate::shared::{self, FRONT_REACH, View};
+use crate::shared::{self, View};
 use crate::shot::Shot;
 use crate::sub_light::{Part, evenly_spread};
-use crate::technique::Recipe;
-use crate::technique::Settings;
-
-/// Tangent up to which the front face of a point's view holds receivers: 76 degrees. Its map is fitted to casters, so that
-/// a wide one costs texels only where there are casters to the side.
-const POINT_REACH: f32 = 4.0;
+use crate::technique::{POINT_REACH, Recipe, Settings};
 
 /// What is to be done about a light.
 #[derive(Debug, Clone)]
@@ -43,7 +38,9 @@ pub struct ViewSet {
 impl ViewSet {
     /// [degree] How far from the light's axis the front face holds receivers.
     pub(super) fn reach_degrees(&self) -> f64 {
-        f64::from(reach(&self.settings)).atan().to_degrees()
+        f64::from(self.settings.technique.method().reach())
+            .atan()
+            .to_degrees()
     }
 }
 
@@ -252,10 +249,11 @@ fn poses(
     found: &LightCoverage,
     turned: bool,
 ) -> Vec<ViewPose> {
-    let faces = found.faces(reach(settings));
+    let reach = settings.technique.method().reach();
+    let faces = found.faces(reach);
     let reach = match faces.len() {
         1 => f32::MAX,
-        _ => reach(settings),
+        _ => reach,
     };
     let of_part = |part: &Part| {
         let pose = |&face: &usize| ViewPose {
@@ -267,14 +265,6 @@ fn poses(
         faces.iter().map(pose).collect::<Vec<_>>()
     };
     parts.iter().flat_map(of_part).collect()
-}
-
-/// Tangent up to which the front face of a view holds receivers; side faces hold the rest.
-fn reach(settings: &Settings) -> f32 {
-    match settings.technique.method().has_views_of_points() {
-        true => POINT_REACH,
-        false => FRONT_REACH,
-    }
 }
 
 /// The parts of a light with the settings that run in their views. Where an occluder is nearer to a part than the part is

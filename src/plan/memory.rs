@@ -23,7 +23,7 @@ impl PlannedResource {
 }
 
 /// All resources that some frame has, in the order of plans; those of its techniques before the back.
-fn declared(techniques: Vec<&'static Resource>) -> impl Iterator<Item = &'static Resource> {
+fn declared(techniques: Vec<Resource>) -> impl Iterator<Item = Resource> {
     let shared = [
         front::RESOURCES,
         map::RESOURCES,
@@ -33,14 +33,16 @@ fn declared(techniques: Vec<&'static Resource>) -> impl Iterator<Item = &'static
         kernel::LIST_RESOURCES,
         map::SECTORS,
     ];
-    let shared = shared.into_iter().flatten();
-    shared.chain(techniques).chain(back::RESOURCES)
+    let shared = shared.into_iter().flatten().copied();
+    shared
+        .chain(techniques)
+        .chain(back::RESOURCES.iter().copied())
 }
 
 impl Plan {
     pub(super) fn list_resources(&mut self, inventory: &Inventory) {
         let sizes = self.sizes(*inventory);
-        let planned = |resource: &Resource| PlannedResource {
+        let planned = |resource: Resource| PlannedResource {
             name: resource.name,
             shape: (resource.shape)(&sizes),
             copied: resource.copied,
@@ -49,11 +51,11 @@ impl Plan {
     }
 
     /// What the lights' techniques have for themselves, each once.
-    fn of_techniques(&self) -> Vec<&'static Resource> {
-        let mut found: Vec<&Resource> = Vec::new();
-        for resource in self.sets().flat_map(|set| set.recipe.resources) {
+    fn of_techniques(&self) -> Vec<Resource> {
+        let mut found: Vec<Resource> = Vec::new();
+        for resource in self.sets().flat_map(|set| &set.recipe.resources) {
             if found.iter().all(|known| known.name != resource.name) {
-                found.push(resource);
+                found.push(*resource);
             }
         }
         found
@@ -121,6 +123,20 @@ impl Plan {
                 "an image of {width}x{height} is more than the device's {} pixels a side; choose a smaller --size",
                 limits.image_side
             )));
+        }
+        let adds = |kind| {
+            matches!(
+                kind,
+                Shape::Image {
+                    kind: ImageKind::Sums,
+                    ..
+                }
+            )
+        };
+        if !limits.adds_floats && self.resources.iter().any(|resource| adds(resource.shape)) {
+            return Err(Error::Unsupported(
+                "the device cannot add up in 32-bit floats; choose --accumulate fp16".into(),
+            ));
         }
         for resource in &self.resources {
             let (limit, what) = match resource.shape.is_image() {

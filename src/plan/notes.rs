@@ -1,7 +1,10 @@
 //! What will not be as it was asked for, a sentence each.
 
+use glam::DVec2;
+
 use super::light::Placed;
-use super::survey::LightCoverage;
+use super::patches::{Occluders, fraction_bits};
+use super::survey::{self, LightCoverage};
 use super::{LightPlan, Lighting, Plan};
 use crate::scene::AreaLight;
 use crate::shared::BIAS_ROUNDING;
@@ -41,6 +44,7 @@ fn notes(
         has_few_points(planned),
         touches(planned, placed, found),
         is_far(planned, shot, placed),
+        loses_shares(planned, shot, light, &settings, found),
     ];
     notes.into_iter().flatten().collect()
 }
@@ -114,4 +118,31 @@ fn is_far(planned: &LightPlan, shot: &Shot, placed: &Placed) -> Option<String> {
                 "{name} is {away:.1e} away, where depths are rounded: occluders less than {lost:.1e} above a surface cast no shadow on it."
             )
         })
+}
+
+/// Micropatches that hide so little that the format of their sums cannot tell [Atty06 app. A].
+fn loses_shares(
+    planned: &LightPlan,
+    shot: &Shot,
+    light: &AreaLight,
+    settings: &Settings,
+    found: &[LightCoverage],
+) -> Option<String> {
+    let sums = settings.reads("accumulate", light.is_point()) == Some(true);
+    if !sums || planned.lighting != Lighting::Shadowed {
+        return None;
+    }
+    let placed = survey::Placed::new(light, shot.origin(), shot.touch(light));
+    let occluders = Occluders::new(shot, &placed, &found[0])?;
+    let (width, height) = light.half_size();
+    let size = 2.0 * DVec2::new(width, height) / f64::from(settings.split);
+    let least = occluders.least_distance(settings, size);
+    let (name, nearest, format) = (&planned.name, occluders.nearest, settings.accumulate);
+    (nearest < least).then(|| {
+        format!(
+            "An occluder is {nearest:.2e} from {name}; where one is nearer than {least:.2e}, a texel of its map hides less than \
+             2^-{} of the light and {format} may lose it: choose --accumulate fp32, a smaller --map or a larger --split.",
+            fraction_bits(format)
+        )
+    })
 }

@@ -102,10 +102,7 @@ impl Plan {
         if !recipe.kernels && !shot.lights[index].is_point() && near < parts {
             self.omit(
                 format!("{name}: hierarchy, kernels, lists"),
-                format!(
-                    "{} tests single samples of the maps",
-                    shot.settings.technique
-                ),
+                format!("{} has no kernels", shot.settings.technique),
             );
         }
         let packets = shot.settings.reads("packet", false) == Some(true);

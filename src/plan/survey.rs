@@ -17,6 +17,8 @@ use super::clip::clip;
 pub struct LightCoverage {
     /// A visible surface may lie in front of the light and face it.
     pub receivers: bool,
+    /// The box of all such surfaces in the light's frame; without points where there are none.
+    pub receiver_bounds: (DVec3, DVec3),
     /// A triangle may stand between the light and such a surface.
     pub casters: bool,
     /// The largest tangents towards +u, −u, +v, −v under which parts of the light see receivers.
@@ -52,17 +54,17 @@ const NEAREST: f64 = 0.25;
 const IN_PLANE: f64 = 1e-3;
 
 /// A light in its own frame, relative to the camera's eye.
-struct Placed {
+pub struct Placed {
     center: DVec3,
     axes: [DVec3; 3],
     half: DVec2,
     round: bool,
     /// [scene units] Height up to which surfaces are the lamp's own.
-    touch: f64,
+    pub touch: f64,
 }
 
 impl Placed {
-    fn new(light: &AreaLight, origin: DVec3, touch: f64) -> Self {
+    pub fn new(light: &AreaLight, origin: DVec3, touch: f64) -> Self {
         let (u, v, n) = light.frame();
         Self {
             center: light.center - origin,
@@ -73,7 +75,7 @@ impl Placed {
         }
     }
 
-    fn to_light(&self, point: DVec3) -> DVec3 {
+    pub fn to_light(&self, point: DVec3) -> DVec3 {
         let way = point - self.center;
         DVec3::from(self.axes.map(|axis| axis.dot(way)))
     }
@@ -109,6 +111,7 @@ pub fn survey(
     let placed = Placed::new(light, origin, touch);
     let mut found = LightCoverage {
         receivers: false,
+        receiver_bounds: (DVec3::INFINITY, DVec3::NEG_INFINITY),
         casters: false,
         tangents: [0.0; 4],
         near: Vec::new(),
@@ -132,6 +135,7 @@ pub fn survey(
             widen(&mut found.tangents, point, placed.half);
         }
     }
+    found.receiver_bounds = (lower, upper);
     if !found.receivers {
         return found;
     }
@@ -242,7 +246,7 @@ impl Near {
 }
 
 /// `corners`, `lower` and `upper` (the receivers' box) in the light's frame.
-fn may_cast(light: &Placed, corners: [DVec3; 3], lower: DVec3, upper: DVec3) -> bool {
+pub fn may_cast(light: &Placed, corners: [DVec3; 3], lower: DVec3, upper: DVec3) -> bool {
     if corners.iter().all(|corner| corner.z <= light.touch)
         || corners.iter().all(|corner| corner.z >= upper.z)
     {

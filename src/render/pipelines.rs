@@ -7,7 +7,7 @@ use ash::vk;
 use crate::error::{Error, Result};
 use crate::frame::{Drawn, Pass, Target, Work};
 use crate::gpu::{
-    ComputePass, Constants, Gpu, GraphicsPass, GraphicsState, ImageKind, Resources, Sources,
+    Blend, ComputePass, Constants, Gpu, GraphicsPass, GraphicsState, ImageKind, Resources, Sources,
 };
 use crate::plan::Plan;
 
@@ -61,12 +61,17 @@ impl Pipelines {
                 into,
             } => {
                 let colors = colors(plan, into, output);
+                let (depth, blend) = match into {
+                    Target::Images { depth, blend, .. } => (depth.is_some(), blend),
+                    Target::Lent => (false, Blend::Replace),
+                };
                 let draw = |name: &str, fragment, constants: &Constants| {
                     let state = GraphicsState {
                         vertex,
                         fragment,
                         colors: &colors,
-                        depth: into != Target::Lent,
+                        blend,
+                        depth,
                     };
                     GraphicsPass::with_each(gpu, name, &state, constants, &lists)
                 };
@@ -103,7 +108,6 @@ fn colors(plan: &Plan, into: Target, output: vk::Format) -> Vec<vk::Format> {
             let format = |name: &&str| plan.image_kind(name).map(ImageKind::format);
             colors.iter().filter_map(format).collect()
         }
-        Target::Map => Vec::new(),
         Target::Lent => vec![output],
     }
 }

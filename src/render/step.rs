@@ -4,7 +4,7 @@ use std::mem::offset_of;
 
 use super::pipelines::Pipelines;
 use crate::error::{Error, Result};
-use crate::frame::{Domain, Drawn, Lent, Scope, Step, Target, Work, map::MARGIN};
+use crate::frame::{Domain, Drawn, Extent, Lent, Scope, Step, Target, Work};
 use crate::gpu::{self, Attachments, Commands, Draw, Groups, MAX_COLORS, Resources};
 use crate::plan::Plan;
 use crate::shared::{Fit, GROUP_SIZE, Instance, Push, Round, TILE_SIZE};
@@ -74,7 +74,7 @@ impl Recording<'_> {
             }
             Work::Draw { what, into, .. } => {
                 let target = self.target(into, side, inputs)?;
-                self.draw(commands, step, pipelines, what, &target, inputs)?;
+                self.draw(commands, step, pipelines, (what, side), &target, inputs)?;
             }
             Work::CopyLayer { from, to } => {
                 let (from, to) = (resources.image(from)?, resources.image(to)?);
@@ -136,6 +136,10 @@ impl Recording<'_> {
                 let level = push.level as usize * size_of::<[u32; 3]>();
                 return found(offset_of!(Fit, level_groups) + level);
             }
+            Domain::PyramidLevel => {
+                let side = side.div_ceil(1 << push.level);
+                Groups::Direct(tiles((side, side)))
+            }
             Domain::MapTexels => Groups::Direct(tiles((side, side))),
             Domain::Once | Domain::Instances | Domain::PacketList | Domain::PixelList => {
                 Groups::Direct([1, 1, 1])
@@ -144,29 +148,32 @@ impl Recording<'_> {
     }
 
     fn target(&self, into: Target, side: u32, inputs: &Inputs) -> Result<Attached> {
-        let image = |name| Ok(self.resources.image(name)?.target());
         match into {
-            Target::Images { colors, depth } => {
-                let depth = image(depth)?;
-                let mut attached = [depth; MAX_COLORS];
+            Target::Images {
+                colors,
+                depth,
+                extent,
+                ..
+            } => {
+                let image = |name| {
+                    let mut target = self.resources.image(name)?.target();
+                    if extent != Extent::Image {
+                        target.size = (side, side);
+                    }
+                    Ok(target)
+                };
+                let mut attached = [gpu::Target::default(); MAX_COLORS];
                 for (target, name) in attached.iter_mut().zip(colors) {
                     *target = image(name)?;
                 }
                 Ok(Attached {
                     colors: attached,
                     color_count: colors.len(),
-                    depth: Some(depth),
-                    margin: 0,
-                })
-            }
-            Target::Map => {
-                let mut map = image("shadow_map")?;
-                map.size = (side, side);
-                Ok(Attached {
-                    colors: [map; MAX_COLORS],
-                    color_count: 0,
-                    depth: Some(map),
-                    margin: MARGIN,
+                    depth: depth.map(image).transpose()?,
+                    margin: match extent {
+                        Extent::Image => 0,
+                        Extent::Map { margin } => margin,
+                    },
                 })
             }
             Target::Lent => {
@@ -188,21 +195,21 @@ impl Recording<'_> {
         commands: &mut Commands,
         step: &Step,
         pipelines: &Pipelines,
-        what: Drawn,
+        (what, side): (Drawn, u32),
         target: &Attached,
         inputs: &mut Inputs,
     ) -> Result<()> {
         let (name, push, into) = (step.pass.name, push(step), target.attachments());
         let list = self.list(step, inputs);
         match (what, pipelines) {
-            (Drawn::Surface, Pipelines::Draw(pass)) => {
+            (Drawn::Surface | Drawn::WholeImage | Drawn::Texels, Pipelines::Draw(pass)) => {
                 let frame = &self.plan.frame;
-                let vertices = 3 * (frame.opaque_count + frame.masked_count);
-                let draw = (pass.with(list), Draw::Vertices(vertices));
-                commands.draw(name, push, &into, [draw]);
-            }
-            (Drawn::WholeImage, Pipelines::Draw(pass)) => {
-                let draw = (pass.with(list), Draw::Vertices(3));
+                let (count, instances) = match what {
+                    Drawn::Surface => (3 * (frame.opaque_count + frame.masked_count), 1),
+                    Drawn::Texels => (6, side * side),
+                    _ => (3, 1),
+                };
+                let draw = (pass.with(list), Draw::Vertices { count, instances });
                 commands.draw(name, push, &into, [draw]);
             }
             (Drawn::Casters { .. }, Pipelines::Casters { opaque, masked }) => {

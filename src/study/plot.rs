@@ -22,7 +22,7 @@ const MS_MIN: f64 = 1e-4;
 
 /// Colours that are told apart by the colour-blind (Paul Tol's "muted"), over and over.
 pub(super) fn muted(index: usize) -> RGBColor {
-    const COLORS: [(u8, u8, u8); 9] = [
+    const COLORS: [(u8, u8, u8); 11] = [
         (204, 51, 17),
         (51, 34, 136),
         (136, 204, 238),
@@ -32,6 +32,8 @@ pub(super) fn muted(index: usize) -> RGBColor {
         (204, 102, 119),
         (136, 34, 85),
         (120, 120, 120),
+        (221, 204, 119),
+        (170, 68, 153),
     ];
     let (red, green, blue) = COLORS[index % COLORS.len()];
     RGBColor(red, green, blue)

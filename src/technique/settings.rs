@@ -93,6 +93,16 @@ choice! {
     }
 }
 
+choice! {
+    /// In which format the shares of micropatches add up.
+    enum Accumulate, "format of sums" {
+        /// In 32 bits.
+        Fp32 = "fp32",
+        /// In 16 bits, which lose small shares [Atty06 app. A].
+        Fp16 = "fp16",
+    }
+}
+
 /// Declares [`Settings`] and the table of knobs: a row each, of a field with its type and default, and what [`Row`] says.
 macro_rules! settings {
     ($($(#[$doc:meta])* $field:ident: $type:ty = $default:expr, $row:expr;)+) => {
@@ -133,7 +143,12 @@ settings! {
 
     /// [texel] [16, 8192] Width and height of a shadow map.
     map: u32 = 512,
-        Row::value("map", "R", "Width and height of a shadow map in texels, 16 to 8192")
+        Row::value(
+            "map",
+            "R",
+            "Width and height of a shadow map in texels, 16 to 8192 [default: 128 with occluder-driven, else 512]",
+        )
+            .depends()
             .within(16, 8192, "a shadow map is {} texels wide")
             .swept("maps", "TEXELS", "Values of --map")
             .swept_over("256,512,1024");
@@ -330,6 +345,30 @@ settings! {
         )
         .finite("the bias of shadow widths is a finite number from 0")
         .sets("SHADOW_BIAS");
+
+    /// `OccluderDriven` only: of the soft shadow map.
+    accumulate: Accumulate = Accumulate::Fp32,
+        Row::value(
+            "accumulate",
+            "FORMAT",
+            "With occluder-driven: in which format shadows add up, {} (half the memory, loses small shares)",
+        );
+
+    /// `OccluderDriven` only: a second map, of the occluders' farthest back faces.
+    two_sided: bool = false,
+        Row::switch(
+            "two-sided",
+            "With occluder-driven: the shadows of the farthest back faces as well, of which the darker counts",
+        )
+        .sets("TWO_SIDED");
+
+    /// `OccluderDriven` with one side only: a patch has another below it, at the farthest back face.
+    bottom_patches: bool = false,
+        Row::switch(
+            "bottom-patches",
+            "With occluder-driven and without --two-sided: each patch hides what one at its occluder's end does as well",
+        )
+        .sets("BOTTOM_PATCHES");
 
     /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
     footprint_pruning: bool = true,

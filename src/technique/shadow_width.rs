@@ -27,10 +27,10 @@ const SPREAD: Pass = Pass::dispatch(
 )
 .lasting();
 
-const RESOURCES: &[Resource] = &[Resource::new("shadow_widths", |s| {
+const WIDTHS: Resource = Resource::new("shadow_widths", |s| {
     // Two halves, which are read and written in turn.
     Shape::array::<[f32; 2]>(2 * u64::from(s.map) * u64::from(s.map))
-})];
+});
 
 /// [pass] That spread widths over the map: until the difference is 1, or the distance has been halved to a texel.
 fn spreads(settings: &Settings) -> u32 {
@@ -46,7 +46,7 @@ impl Method for ShadowWidth {
         let spread = (0..spreads(settings)).map(|level| (SPREAD, level));
         let before = [(SEED, 0)].into_iter().chain(spread);
         recipe.passes.splice(0..0, before);
-        recipe.resources = RESOURCES;
+        recipe.resources = vec![WIDTHS];
         recipe
     }
 

@@ -22,7 +22,7 @@ use halfshade::render::{
 use halfshade::scene::{AreaLight, LightShape};
 use halfshade::shared::{Fit, NORMAL_SIGNED, View};
 use halfshade::shot::Shot;
-use halfshade::technique::Settings;
+use halfshade::technique::{Settings, Technique};
 
 use host::{Host, with_host};
 
@@ -314,6 +314,19 @@ fn effects_give_what_the_renderer_gives() {
         };
         let stage = Stage::new(&gpu, settings(2), |light| light.shape = round);
         check_meshes(host, &stage);
+        // Maps of the bottoms and of the receivers are drawn from meshes as well, and from nothing else.
+        let scattered = Settings {
+            technique: Technique::OccluderDriven,
+            two_sided: true,
+            ..settings(1)
+        };
+        let stage = Stage::new(&gpu, scattered, |_| {});
+        check_meshes(host, &stage);
+        for casters in [Casters::DrawnByHost, Casters::Maps] {
+            let refused = Effect::new(&host.adopted(), stage.frame(casters), DEFAULT_COSTS);
+            let message = refused.err().map(|error| error.to_string());
+            assert!(message.is_some_and(|message| message.contains("give meshes")));
+        }
         // So near above the plate that its shadow reaches where the side faces look. Maps of the whole region that
         // casters may be in have larger texels than those that the device fits to casters that it knows.
         let fine = Settings {

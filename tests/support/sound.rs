@@ -23,6 +23,7 @@ const LIMITS: Limits = Limits {
     buffer_bytes: 1 << 27,
     memory_bytes: 1 << 33,
     allowed_bytes: u64::MAX,
+    adds_floats: true,
     loop_turns: 60000,
 };
 

@@ -162,7 +162,7 @@ static void frames(hs_context *context) {
 static void techniques(hs_context *context) {
     uint32_t technique;
     hs_shot *shot = make_shot(context, 8, 0.4);
-    for (technique = HS_TECHNIQUE_PACKET_CONTOUR; technique <= HS_TECHNIQUE_SHADOW_WIDTH; ++technique) {
+    for (technique = HS_TECHNIQUE_PACKET_CONTOUR; technique <= HS_TECHNIQUE_OCCLUDER_DRIVEN; ++technique) {
         HEAD(hs_settings, settings, HS_TYPE_SETTINGS);
         OK(hs_settings_default(technique, &settings));
         CHECK(settings.technique == technique && settings.split == (technique == 0 ? 4u : 1u));
