@@ -3,6 +3,7 @@
 
 mod atty06;
 mod atty06_costs;
+mod atty06_format;
 mod busy;
 mod check;
 mod equal_texels;
@@ -121,13 +122,14 @@ impl Candidate {
 }
 
 /// All experiments, by publication.
-pub static EXPERIMENTS: [Experiment; 14] = [
+pub static EXPERIMENTS: [Experiment; 15] = [
     yang09::FIG8,
     yang09::FIG9,
     yang09::FIG11,
     yang09_packets::FIG12,
     yang09_packets::FIG13,
     schwarz08::TABLE1,
+    atty06_format::FIG14,
     atty06::FIG17,
     atty06::FIG18,
     atty06::FIG19,

@@ -16,13 +16,14 @@ use super::made_up;
 use super::support::with_gpu;
 
 /// What the issue asks for.
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     "yang09-fig8",
     "yang09-fig9",
     "yang09-fig11",
     "yang09-fig12",
     "yang09-fig13",
     "schwarz08-table1",
+    "atty06-fig14",
     "atty06-fig17",
     "atty06-fig18",
     "atty06-fig19",
@@ -162,7 +163,7 @@ fn verdict(name: &str, rows: &[Row]) -> Verdict {
 /// The same experiment is judged by what its rows say.
 #[test]
 fn verdicts_follow_from_the_numbers() {
-    let series = "micropatches with gaps";
+    let series = "one pass";
     let heights = |errors: [f64; 4]| -> Vec<Row> {
         let points = [0.1, 0.3, 0.6, 0.9].into_iter().zip(errors);
         points
@@ -171,7 +172,9 @@ fn verdicts_follow_from_the_numbers() {
     };
     let fig20 = |errors| verdict("atty06-fig20", &heights(errors));
     assert_eq!(fig20([0.01, 0.02, 0.03, 0.04]), Verdict::SameTrend);
-    assert_eq!(fig20([0.04, 0.03, 0.02, 0.01]), Verdict::Differs);
+    // Equation 3 allows more.
+    assert_eq!(fig20([0.04, 0.03, 0.02, 0.01]), Verdict::SameTrendInPart);
+    assert_eq!(fig20([4.0, 3.0, 2.0, 1.0]), Verdict::Differs);
 
     let maps = |times: [f64; 3]| -> Vec<Row> {
         let points = [64.0f64, 128.0, 256.0].into_iter().zip(times);

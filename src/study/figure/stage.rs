@@ -150,10 +150,14 @@ impl Stage {
         let half = 0.5 * self.light;
         let ground = Shape::square(4.0);
         Shot {
-            scene: Arc::new(Scene::of_shapes(&[
-                (ground, Vec3::splat(0.8)),
-                (shape, Vec3::new(0.8, 0.5, 0.4)),
-            ])),
+            scene: Arc::new(
+                Scene::of_shapes(&[
+                    (ground, Vec3::splat(0.8)),
+                    (shape, Vec3::new(0.8, 0.5, 0.4)),
+                ])
+                // The ground receives, what stands over it casts.
+                .with_casters(&[1]),
+            ),
             camera: Camera {
                 name: String::new(),
                 eye: target + DVec3::new(0.0, sin, cos) * CAMERA,
@@ -178,6 +182,14 @@ impl Stage {
             settings: Settings::default(),
             notes: Vec::new(),
         }
+    }
+
+    /// [share of the light's width] What two patches overlap by at most, one at the occluder's highest place and one at its lowest
+    /// [Atty06 eq. 3].
+    pub fn largest_overlap(&self) -> f64 {
+        let (lo, hi) = self.model.shape().bounds();
+        let (nearest, step) = (LIGHT_HEIGHT - self.height - hi.y, hi.y - lo.y);
+        0.5 * LIGHT_HEIGHT * step / (nearest * (LIGHT_HEIGHT - nearest - step))
     }
 
     /// The middle and the reach along x of the shadow of an occluder whose highest point has this height.
