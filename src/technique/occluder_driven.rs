@@ -4,7 +4,8 @@
 //! Right: inner and outer penumbrae at a cost that neither image nor receivers but occluders decide; a shot that tells casters from
 //! receivers. Wrong: occluders receive no shadow, not even of others; areas add up, so that patches of different depths overlap on
 //! the light or leave gaps between them, by up to equation 3 for each pair; what the light's centre does not see hides nothing,
-//! which bottoms mend in part; sums in 16 bits lose shares below 2⁻¹¹ of themselves. A disc light is a square of its area.
+//! which bottoms mend: two sides in most part, bottom patches at the price of more overlaps, too dark under what is thick; sums in
+//! 16 bits lose shares below 2⁻¹¹ of themselves. A disc light is a square of its area.
 //! Where a shot tells no casters, everything casts, and of the front faces towards the light the farthest receive: right on the
 //! ground, not on what lies between.
 //! DEVIATION [Atty06 §3.1]: patches and lights of any aspect; §3.5: the nearest faces are drawn whichever side they show, for they

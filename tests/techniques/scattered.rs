@@ -208,6 +208,26 @@ fn bottoms_hide_what_the_centre_does_not_see() {
     assert!(bottoms < one, "{bottoms} with bottoms, {one} without");
 }
 
+/// [As read here] Bottom patches overlap the patches of other texels, so that shadows of what is thick are too dark; two sides are
+/// not.
+#[test]
+fn bottom_patches_are_too_dark_under_what_is_thick() {
+    let knot = |settings| {
+        let shot = load("knot", SIDE as u32, settings);
+        // The ground comes first.
+        told(shot, |triangle| triangle >= 2)
+    };
+    let truth = true_floor(&knot(usual()));
+    let darker = |settings| {
+        let floor = pixels_of(&knot(settings), true);
+        let darker = truth.iter().zip(&floor).map(|(truth, value)| truth - value);
+        darker.sum::<f32>() / truth.len() as f32
+    };
+    let [one, bottoms, two] = kinds().map(darker);
+    assert!(bottoms > 0.02, "{bottoms} darker");
+    assert!(one < 0.0 && two.abs() < 0.01, "{one} and {two} darker");
+}
+
 /// [§3.1, §7] Occluders receive no shadow, not even on the side that another one hides.
 #[test]
 fn occluders_receive_no_shadow() {
