@@ -16,7 +16,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec3};
 use halfshade::shared::{Fit, View};
 use halfshade::shot::Shot;
-use halfshade::technique::{Neighbours, Occluders, Pattern, Settings, Technique};
+use halfshade::technique::{Hierarchy, Neighbours, Occluders, Pattern, Settings, Technique};
 use halfshade::twin::receiver::{in_view, project};
 use halfshade::twin::shadow_width::ShadowWidths;
 use support::{
@@ -211,7 +211,7 @@ fn the_same_shot_has_the_same_image() {
 }
 
 /// A pyramid finds the same patches as a scan of all texels; only the order of their sum differs, some thousand terms
-/// in f32.
+/// in f32. Of the same hierarchy, which decides which pixels are in the umbra; others add patches up, with gaps between them.
 #[test]
 fn hierarchical_micropatches_are_micropatches() {
     with_gpu(|gpu| {
@@ -221,6 +221,7 @@ fn hierarchical_micropatches_are_micropatches() {
                     let settings = Settings {
                         gap_filling,
                         map: 128,
+                        hierarchy: Hierarchy::Hsm,
                         ..Settings::usual(technique)
                     };
                     support::visibility(gpu, &load(scene, 32, settings))

@@ -225,7 +225,7 @@ settings! {
         Row::value(
             "hierarchy",
             "NAME",
-            "How densely the hierarchy over the map stands, {}; the image is the same",
+            "How densely the hierarchy over the map stands, {}; with contours the image is the same",
         )
         .depends()
         .swept("hierarchies", "NAMES", "Values of --hierarchy [default: as the technique has it]");
