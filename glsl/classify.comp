@@ -114,7 +114,7 @@ void main() {
     [[dont_unroll]] for (uint i = 0u; i < PIXELS_PER_PACKET; ++i) {
         if (!is_penumbra(at, i, index)) continue;
         SurfacePoint point = surface_at(pixel_at(index));
-        include(stats, kernels[index], project(view, fit, point.position - view.center, point.normal));
+        include(stats, kernels[index], project(view, fit, point.position - view.center, point.normal, point.error));
     }
     if (stats.count == 0u) return;
     if (COUNT) atomicAdd(counters.packets, 1u);

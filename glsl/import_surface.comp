@@ -14,15 +14,31 @@ TEXTURE(host_normal);
 writeonly IMAGE(position_world, rgba32f);
 writeonly IMAGE(normal_world, rgba32f);
 
-// [scene units] The surface's position; w = 0 where there is none.
+// By how much a number may be off that the image holds.
+float rounding_of(float number) { return host.surface_share * abs(number) + host.surface_step; }
+
+// [scene units] What stands for a surface that is where it says; w > 0 tells that there is one.
+const float EXACT = 1e-30;
+
+// [scene units] By how much the position may be off: as the host says, or else as its image's format says.
+float error_or(float found) { return max(host.position_error > 0.0 ? host.position_error : found, EXACT); }
+
+// [scene units] The surface's position, and by how much it may be off; w = 0 where there is none.
 vec4 position_at(ivec2 pixel) {
     vec4 texel = texelFetch(host_surface, pixel, 0);
-    if (GIVEN_POSITIONS) return vec4(texel.xyz, texel.w > 0.0 ? 1.0 : 0.0);
+    if (GIVEN_POSITIONS) {
+        float error = length(vec3(rounding_of(texel.x), rounding_of(texel.y), rounding_of(texel.z)));
+        return vec4(texel.xyz, texel.w > 0.0 ? error_or(error) : 0.0);
+    }
     vec2 window = 2.0 * (vec2(pixel) + 0.5) / vec2(frame.size) - 1.0;
     vec4 clip = vec4(window, texel.x, 1.0);
     vec4 world = host.world_from_clip[0] * clip.x + host.world_from_clip[1] * clip.y
                + host.world_from_clip[2] * clip.z + host.world_from_clip[3] * clip.w;
-    return vec4(world.xyz / world.w, texel.x == host.depth_empty ? 0.0 : 1.0);
+    vec3 position = world.xyz / world.w;
+    // How the position moves with the depth.
+    vec3 way = (host.world_from_clip[2].xyz - position * host.world_from_clip[2].w) / world.w;
+    float error = length(way) * rounding_of(texel.x);
+    return vec4(position, texel.x == host.depth_empty ? 0.0 : error_or(error));
 }
 
 vec3 octahedral(vec2 e) {

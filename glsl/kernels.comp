@@ -89,7 +89,7 @@ void main() {
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
     if (point.exists && in_view(view, to_point, point.normal)) {
         kernel.status = KERNEL_LIT;
-        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal));
+        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error));
     }
     kernels[index] = kernel;
     bool umbra = kernel.status == KERNEL_UMBRA;

@@ -478,8 +478,8 @@ typedef struct hs_settings {
     uint32_t percentage_closer;
     // [1, 4096] REFERENCE_MAPS.
     uint32_t maps;
-    // [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are
-    // rounded more than 32-bit floats are need more of it than the technique's usual one.
+    // [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. What the
+    // format of a host's surface rounds off comes on top of it by itself; see `position_error` of hs_vk_frame.
     float bias;
     // 1 = count pixels, packets, nodes and edges, which takes time.
     uint32_t counters;
@@ -683,7 +683,8 @@ hs_result hs_devices(struct hs_device_info *devices,
 hs_result hs_context_device(const struct hs_context *context, struct hs_device_info *device);
 
 // Copies the sentence that belongs to the last call that failed: on `context`, or, where that is NULL, on this
-// thread.
+// thread. A call with a handle that is not alive belongs to no context; its sentence is told for any, on its thread, until
+// another call fails there.
 //
 // `text` receives at most `capacity` bytes of UTF-8 with a NUL at the end; it may be NULL when `capacity` is 0.
 // Returns the number of bytes that the whole sentence takes with its NUL; 1 when there is none, 0 when `context`

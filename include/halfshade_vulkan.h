@@ -422,8 +422,10 @@ typedef struct hs_vk_frame {
     float depth_empty;
     // [0, 1] Visibility to be written where there is no surface.
     float background;
-    // 0
-    uint32_t reserved;
+    // [0, ...) [world] By how much positions of the surface may be off. 0 = as the format of its image says (32-bit
+    // floats: as good as exact; D16 and RGBA16F: far off), with depths from the projection and the distance as well.
+    // What stands less than this above a surface casts no shadow on it: contact shadows begin there.
+    float position_error;
 } hs_vk_frame;
 
 // What an effect has.

@@ -415,6 +415,11 @@ shared! {
         depth_empty: float,
         /// [0, 1] Visibility that is exported where there is no surface.
         background: float,
+        /// By how much a number may be off that the surface's image holds: a share of itself, and a step.
+        surface_share: float,
+        surface_step: float,
+        /// [scene units] By how much positions may be off; 0 = as the image's format says.
+        position_error: float,
     }
 
     /// A host's mesh at a place.

@@ -151,6 +151,7 @@ impl Engine {
             normal_encoding: NORMAL_SIGNED,
             depth_empty: 0.0,
             background: 1.0,
+            position_error: 0.0,
             instances: &mut std::iter::once(MeshInstance { mesh: 0, transform }),
             near: 0.1,
             maps: &mut std::iter::empty(),

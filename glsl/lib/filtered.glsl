@@ -38,7 +38,7 @@ void main() {
     float occluded = 0.0;
     // A loop, since some drivers execute both sides of an `if`: of the pixels of a side face most are another face's.
     [[dont_unroll]] for (uint once = 0u; once < uint(looked_at); ++once)
-        occluded = view.weight * hidden_share(view, fit, pixel, project(view, fit, to_point, point.normal));
+        occluded = view.weight * hidden_share(view, fit, pixel, project(view, fit, to_point, point.normal, point.error));
     if (!ACCUMULATE || looked_at) add_occluded(index_of(pixel), occluded);
     if (COUNT && looked_at) {
         samples_read = samples_read_by_pixel();

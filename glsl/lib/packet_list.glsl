@@ -50,7 +50,7 @@ vec2 kappa;
 
 void keep_pixel(View view, Fit fit, uint slot, uint index) {
     SurfacePoint point = surface_at(pixel_at(index));
-    Receiver receiver = project(view, fit, point.position - view.center, point.normal);
+    Receiver receiver = project(view, fit, point.position - view.center, point.normal, point.error);
     is_kept[slot] = true;
     slot_end = slot + 1u;
     pixel_index[slot] = index;

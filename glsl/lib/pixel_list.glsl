@@ -48,7 +48,7 @@ float hidden_share();
 ListedPixel listed_pixel(uint index) {
     View view = views[push.index];
     SurfacePoint point = surface_at(pixel_at(index));
-    Receiver receiver = project(view, fits[push.index], point.position - view.center, point.normal);
+    Receiver receiver = project(view, fits[push.index], point.position - view.center, point.normal, point.error);
     return ListedPixel(index, view, receiver, unpacked(kernels[index].first), unpacked(kernels[index].last));
 }
 

@@ -55,7 +55,8 @@ bool in_view(View view, vec3 to_point, vec3 normal) {
     return sum > dot_exact(normal, to_point);
 }
 
-Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
+// error: [scene units] by how much the point may be off, beyond what 32 bits round off.
+Receiver project(View view, Fit fit, vec3 to_point, vec3 normal, float error) {
     Receiver receiver;
     precise vec3 p = to_face(view, to_point);
     precise float inverse_z = 1.0 / p.z;
@@ -71,7 +72,9 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal) {
     precise float slope_bias = min((slope.x + slope.y) * view.bias, BIAS_SLOPE_MAX * d);
     precise vec3 magnitude = abs(to_point) + abs(view.center);
     precise float rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * inverse_z);
-    precise float biased = d + slope_bias + rounding;
+    // A plane that is off by `error` has depths that are off by the same share as its distance from the light.
+    precise float misplaced = d * min(error / max(abs(height), 1e-30), 1.0);
+    precise float biased = d + slope_bias + rounding + misplaced;
 
     receiver.t = t;
     receiver.d = d;

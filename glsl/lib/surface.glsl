@@ -1,5 +1,7 @@
 // The visible surface as the g-buffer has it, a point for each pixel. Needs the buffer `frame`.
 
+layout(constant_id = 29) const bool GIVEN_SURFACE = false;  // a host has the surface already
+
 TEXTURE(position_world);
 TEXTURE(normal_world);
 
@@ -10,11 +12,14 @@ struct SurfacePoint {
     vec3 normal;
     // There is a surface.
     bool exists;
+    // [scene units] By how much the position may be off, beyond what 32 bits round off.
+    float error;
 };
 
 SurfacePoint surface_at(uvec2 pixel) {
     vec4 position = texelFetch(position_world, ivec2(pixel), 0);
-    return SurfacePoint(position.xyz, texelFetch(normal_world, ivec2(pixel), 0).xyz, position.w > 0.0);
+    return SurfacePoint(position.xyz, texelFetch(normal_world, ivec2(pixel), 0).xyz, position.w > 0.0,
+                        GIVEN_SURFACE ? position.w : 0.0);
 }
 
 // Pixels are numbered row by row.

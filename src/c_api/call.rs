@@ -11,7 +11,14 @@ use super::handles::Registry;
 use super::types::*;
 
 thread_local! {
-    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+    static LAST_ERROR: RefCell<LastError> = const { RefCell::new(LastError { text: String::new(), homeless: false }) };
+}
+
+/// Of the last call of a thread that failed.
+struct LastError {
+    text: String,
+    /// It named no living object, so that no context has heard of it.
+    homeless: bool,
 }
 
 /// Which context a call belongs to, as soon as it is known.
@@ -48,8 +55,12 @@ pub fn call(body: impl FnOnce(&mut Scope) -> CallResult) -> hs_result {
     };
     // Dropping the context's last reference may run code that panics, as any other.
     let _ = catch_unwind(AssertUnwindSafe(|| {
-        LAST_ERROR.with_borrow_mut(|text| text.clone_from(&fault.text));
-        if let Some(context) = scope.context.take() {
+        let context = scope.context.take();
+        LAST_ERROR.with_borrow_mut(|last| {
+            last.text.clone_from(&fault.text);
+            last.homeless = context.is_none();
+        });
+        if let Some(context) = context {
             context.remember(&fault);
         }
     }));
@@ -57,7 +68,8 @@ pub fn call(body: impl FnOnce(&mut Scope) -> CallResult) -> hs_result {
 }
 
 /// Copies the sentence that belongs to the last call that failed: on `context`, or, where that is NULL, on this
-/// thread.
+/// thread. A call with a handle that is not alive belongs to no context; its sentence is told for any, on its thread, until
+/// another call fails there.
 ///
 /// `text` receives at most `capacity` bytes of UTF-8 with a NUL at the end; it may be NULL when `capacity` is 0.
 /// Returns the number of bytes that the whole sentence takes with its NUL; 1 when there is none, 0 when `context`
@@ -73,9 +85,12 @@ pub unsafe extern "C" fn hs_last_error(
 ) -> u64 {
     let mut length = 0;
     quietly(|| {
-        let sentence = match context.is_null() {
-            true => Some(LAST_ERROR.with_borrow(String::clone)),
-            false => CONTEXTS.get(context).map(|found| found.sentence()),
+        let (of_thread, homeless) =
+            LAST_ERROR.with_borrow(|last| (last.text.clone(), last.homeless));
+        let sentence = match CONTEXTS.get(context) {
+            Some(_) if homeless => Some(of_thread),
+            Some(found) => Some(found.sentence()),
+            None => context.is_null().then_some(of_thread),
         };
         if let Some(sentence) = sentence {
             length = sentence.len() as u64 + 1;

@@ -44,7 +44,7 @@ impl<H, T> Registry<H, T> {
         self.get(handle).ok_or_else(|| {
             Fault::invalid(match handle.is_null() {
                 true => format!("the {} is NULL", self.name),
-                false => format!("the {0} is not a {0}, or was destroyed before", self.name),
+                false => format!("the {} is none, or was destroyed before", self.name),
             })
         })
     }

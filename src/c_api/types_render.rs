@@ -53,8 +53,8 @@ pub struct hs_settings {
     pub percentage_closer: u32,
     /// [1, 4096] REFERENCE_MAPS.
     pub maps: u32,
-    /// [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. Positions that are
-    /// rounded more than 32-bit floats are need more of it than the technique's usual one.
+    /// [texel] [0, ...) Depth bias in texels of the receiver's slope; -1 = the usual one of what runs. What the
+    /// format of a host's surface rounds off comes on top of it by itself; see `position_error` of hs_vk_frame.
     pub bias: f32,
     /// 1 = count pixels, packets, nodes and edges, which takes time.
     pub counters: u32,

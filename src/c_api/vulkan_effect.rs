@@ -149,7 +149,7 @@ pub extern "C" fn hs_vk_effect_collect(
     completed_serial: u64,
 ) -> hs_result {
     with(effect, |frames| {
-        frames.effect.collect(completed_serial);
+        frames.effect.collect(completed_serial)?;
         Ok(())
     })
 }

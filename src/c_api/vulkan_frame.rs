@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::call_result::{CallResult, Fault};
 use super::check::{input, structures_of};
-use super::convert::{self, reserved};
+use super::convert;
 use super::structure::Structure;
 use super::types::HS_NOT_READY;
 use super::vulkan_frame_types::*;
@@ -32,7 +32,6 @@ pub unsafe fn record(
     if !frames.effect.is_prepared() {
         return Err(not_ready());
     }
-    reserved(frame.reserved)?;
     // SAFETY: the caller's promise, here and below.
     let light = convert::light(&unsafe { input(frame.light) }?)?;
     let count = frame.instance_count.into();
@@ -67,6 +66,7 @@ pub unsafe fn record(
         normal_encoding: frames.normals,
         depth_empty: frame.depth_empty,
         background: frame.background,
+        position_error: frame.position_error,
         instances: &mut instances.iter().map(instance_of),
         near: frame.near_distance,
         maps: &mut maps.iter().map(|map| GivenMap {

@@ -222,8 +222,10 @@ pub struct hs_vk_frame {
     pub depth_empty: f32,
     /// [0, 1] Visibility to be written where there is no surface.
     pub background: f32,
-    /// 0
-    pub reserved: u32,
+    /// [0, ...) [world] By how much positions of the surface may be off. 0 = as the format of its image says (32-bit
+    /// floats: as good as exact; D16 and RGBA16F: far off), with depths from the projection and the distance as well.
+    /// What stands less than this above a surface casts no shadow on it: contact shadows begin there.
+    pub position_error: f32,
 }
 
 /// What an effect has.

@@ -1,6 +1,6 @@
 //! The values of specialization constants, by the names that shaders give them.
 
-use crate::frame::{Casters, Pass};
+use crate::frame::{Casters, Front, Pass};
 use crate::gpu::Constants;
 use crate::plan::{LightPlan, Plan, ViewPlan, ViewSet};
 
@@ -10,6 +10,10 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("TEXTURED", plan.textured.into()),
         ("LOOP_BUDGET", plan.loop_turns),
         ("ROUNDS", plan.rounds()),
+        (
+            "GIVEN_SURFACE",
+            matches!(plan.front, Front::Imported(_)).into(),
+        ),
         ("DENSE_LEVELS", plan.density.dense),
         ("SPARSEST", plan.density.sparsest),
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),

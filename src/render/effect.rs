@@ -4,6 +4,7 @@
 mod given;
 mod input;
 mod prepared;
+mod surface;
 
 use std::sync::Arc;
 
@@ -89,13 +90,27 @@ impl Effect {
         let prepared =
             unsafe { Prepared::new(&self.gpu, &self.host, &self.plan, self.costs, slots, meshes) }?;
         self.retired.extend(self.prepared.replace(prepared));
-        self.collect(self.completed);
+        self.retire();
         Ok(())
     }
 
     /// Lets go of what frames up to `completed` have used and no later ones do.
-    pub fn collect(&mut self, completed: u64) {
+    ///
+    /// # Errors
+    /// That frame was not recorded yet.
+    pub fn collect(&mut self, completed: u64) -> Result<()> {
+        if completed > self.recorded {
+            return Err(Error::Invalid(format!(
+                "frame {completed} cannot have finished: the last that was recorded is {}",
+                self.recorded
+            )));
+        }
         self.completed = self.completed.max(completed);
+        self.retire();
+        Ok(())
+    }
+
+    fn retire(&mut self) {
         let completed = self.completed;
         self.retired.retain(|retired| retired.last > completed);
     }
@@ -148,12 +163,16 @@ impl Effect {
             frame.gather(&self.host, meshes, instances, &mut self.chosen)?;
         self.recorded = frame.serial;
         prepared.last = frame.serial;
+        let rounding = prepared.slots[frame.slot].rounding;
         let constants = shared::Host {
             world_from_clip: frame.world_from_clip,
             normal_to_world: frame.normal_to_world,
             normal_encoding: frame.normal_encoding,
             depth_empty: frame.depth_empty,
             background: frame.background,
+            surface_share: rounding.share,
+            surface_step: rounding.step,
+            position_error: frame.position_error,
         };
         // SAFETY: the caller's promise.
         let mut commands = unsafe { Commands::of_host(&self.gpu, commands) };

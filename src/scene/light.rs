@@ -98,7 +98,10 @@ impl AreaLight {
     pub fn validate(&self) -> Result<()> {
         self.fault().map_or(Ok(()), |fault| {
             let name: String = self.name.chars().take(60).collect();
-            Err(Error::Invalid(format!("light {name:?}: {fault}")))
+            Err(Error::Invalid(match name.as_str() {
+                "" => format!("the light: {fault}"),
+                name => format!("light {name:?}: {fault}"),
+            }))
         })
     }
 

@@ -143,7 +143,8 @@ pub fn in_view(view: &View, to_point: Vec3, normal: Vec3) -> bool {
     reach.x + reach.y > normal.dot(to_point)
 }
 
-/// `oblique`: the map is not parallel to the light.
+/// Of a surface that the engine has drawn, whose positions are as exact as 32 bits. `oblique`: the map is not parallel to the
+/// light.
 pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Vec3) -> Receiver {
     let focal = Vec2::from(fit.focal);
     let p = to_face(view, to_point);

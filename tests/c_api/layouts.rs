@@ -72,7 +72,7 @@ fn host_owned() -> Vec<Layout> {
         hs_vk_map { r#type size next clip_from_world depth_empty reserved }
         hs_vk_view { r#type size next command_buffer projections offset index map }
         hs_vk_frame { r#type size next serial slot instance_count light instances draw draw_user maps map_count
-            near_distance world_from_clip normal_to_world depth_empty background reserved }
+            near_distance world_from_clip normal_to_world depth_empty background position_error }
         hs_vk_effect_state { r#type size next memory_bytes projections projection_stride view_count pass_count
             prepared }
     }

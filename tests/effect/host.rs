@@ -270,7 +270,7 @@ impl Host {
 fn aspects(format: vk::Format) -> (vk::ImageAspectFlags, vk::ImageAspectFlags) {
     let (depth, color) = (vk::ImageAspectFlags::DEPTH, vk::ImageAspectFlags::COLOR);
     match format {
-        vk::Format::D32_SFLOAT => (depth, depth),
+        vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => (depth, depth),
         vk::Format::D32_SFLOAT_S8_UINT => (depth, depth | vk::ImageAspectFlags::STENCIL),
         _ => (color, color),
     }

@@ -5,6 +5,7 @@ mod gpu;
 mod host;
 mod kinds;
 mod painter;
+mod rounded;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
@@ -237,6 +238,7 @@ fn with_frame<T>(
         normal_encoding: NORMAL_SIGNED,
         depth_empty: 0.0,
         background: BACKGROUND,
+        position_error: 0.0,
         instances: &mut instances,
         near: own.near,
         maps: &mut maps,
@@ -341,6 +343,7 @@ fn effects_give_what_the_renderer_gives() {
             };
         });
         kinds::check_side_faces(host, &stage);
+        rounded::check(host, &gpu);
     });
 }
 
@@ -384,9 +387,17 @@ fn check_collecting(
     let once = effect.memory_bytes();
     prepare(effect);
     assert_eq!(effect.memory_bytes(), 2 * once, "frame 2 may be under way");
-    effect.collect(1);
+    effect.collect(1).expect("it was recorded");
     assert_eq!(effect.memory_bytes(), 2 * once);
-    effect.collect(2);
+    let early = effect
+        .collect(1_000_000_000)
+        .expect_err("it was not recorded");
+    assert!(
+        early
+            .to_string()
+            .contains("the last that was recorded is 2")
+    );
+    effect.collect(2).expect("it was recorded");
     assert_eq!(effect.memory_bytes(), once);
     prepare(effect);
     assert_eq!(effect.memory_bytes(), once, "no frame has used the last");

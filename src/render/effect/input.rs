@@ -1,10 +1,11 @@
 //! What a host lends to an effect, and what it says about a frame.
 
 use ash::vk;
+use glam::{Mat3, Mat4};
 
 use super::given::{GivenMap, given_view};
 use crate::error::{Error, Result};
-use crate::frame::Casters;
+use crate::frame::{Casters, Surface};
 use crate::gpu::HostImageInfo;
 use crate::plan::HostFrame;
 use crate::scene::AreaLight;
@@ -71,6 +72,8 @@ pub struct FrameInput<'a> {
     pub depth_empty: f32,
     /// [0, 1]
     pub background: f32,
+    /// [scene units] By how much positions of the surface may be off; 0 = as the format of the surface's image says.
+    pub position_error: f32,
     pub instances: &'a mut dyn ExactSizeIterator<Item = MeshInstance>,
     /// [scene units] More than 0: how near to the plane of a view casters may be, where the host draws them or has
     /// drawn them already.
@@ -103,6 +106,19 @@ impl FrameInput<'_> {
             .chain(self.normal_to_world.iter().flatten());
         if !matrices.into_iter().all(|number| number.is_finite()) {
             return invalid("a matrix is not finite");
+        }
+        let normals = Mat3::from_cols_array_2d(&self.normal_to_world).as_dmat3();
+        if normals.determinant() == 0.0 {
+            return invalid("normal_to_world is singular; normals in the world take the identity");
+        }
+        let positions = Mat4::from_cols_array_2d(&self.world_from_clip).as_dmat4();
+        if host.surface == Surface::Depths && positions.determinant() == 0.0 {
+            return invalid(
+                "world_from_clip is singular; it is the inverse of the matrix that the depths were drawn with",
+            );
+        }
+        if !(self.position_error.is_finite() && self.position_error >= 0.0) {
+            return invalid("position_error is a length, or 0");
         }
         if !(0.0..=1.0).contains(&self.background) || self.depth_empty.is_nan() {
             return invalid("background is from 0 to 1, and depth_empty a number");

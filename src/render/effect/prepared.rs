@@ -8,6 +8,7 @@ use super::super::chain::{Chain, Loans};
 use super::super::resources;
 use super::super::step::Inputs;
 use super::input::{Mesh, SlotImages};
+use super::surface::{Rounding, is_fractional_color, rounding};
 use crate::error::{Error, Result};
 use crate::frame::Casters;
 use crate::gpu::{Commands, Gpu, HostBuffer, HostImage, HostImageInfo, Loan, Resources};
@@ -33,6 +34,8 @@ pub struct Prepared {
 
 /// The images of a slot.
 pub struct Slot {
+    /// How exactly its image holds the surface.
+    pub rounding: Rounding,
     inputs: Resources,
     output: HostImage,
 }
@@ -127,8 +130,8 @@ fn check_size(name: &str, image: &HostImageInfo, size: (u32, u32)) -> Result<()>
     match image.size == size && image.raw != vk::Image::null() {
         true => Ok(()),
         false => Err(Error::Invalid(format!(
-            "{name} is an image of {}x{}, not of {}x{}",
-            size.0, size.1, image.size.0, image.size.1
+            "{name} is an image of {}x{}; it must be one of {}x{}",
+            image.size.0, image.size.1, size.0, size.1
         ))),
     }
 }
@@ -142,6 +145,26 @@ impl Slot {
             // SAFETY: the caller's promise.
             unsafe { HostImage::new(gpu, name, info, loan) }
         };
+        let rounding = rounding(images.surface.format, host.surface)?;
+        for (name, image) in [
+            ("normal", &images.normal),
+            ("visibility", &images.visibility),
+        ] {
+            if !is_fractional_color(image.format) {
+                return Err(Error::Invalid(format!(
+                    "{name}: {:?} is no colour of fractions; lend a UNORM, SNORM or SFLOAT format",
+                    image.format
+                )));
+            }
+        }
+        let of_image = |image: &HostImageInfo| (image.raw, image.layer, image.level);
+        for (name, image) in [("surface", &images.surface), ("normal", &images.normal)] {
+            if of_image(image) == of_image(&images.visibility) {
+                return Err(Error::Invalid(format!(
+                    "visibility is the same image as {name}; the result needs an image of its own"
+                )));
+            }
+        }
         let mut inputs = Resources::default();
         inputs.add_host_image(
             "host_surface",
@@ -152,6 +175,7 @@ impl Slot {
             lend("host_normal", images.normal, Loan::Sampled)?,
         );
         Ok(Self {
+            rounding,
             inputs,
             output: lend("visibility", images.visibility, Loan::Drawn)?,
         })

@@ -145,7 +145,11 @@ static void of_effects(hs_context *context) {
     image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     image.current_layout = VK_IMAGE_LAYOUT_UNDEFINED; REFUSED(hs_vk_effect_prepare(effect, &prepare));
     image.current_layout = VK_IMAGE_LAYOUT_GENERAL;
-    image.format = VK_FORMAT_UNDEFINED; CHECK(hs_vk_effect_prepare(effect, &prepare) == HS_UNSUPPORTED);
+    /* One image for all, and formats that cannot be what they are lent as. */
+    image.format = VK_FORMAT_R32G32B32A32_SFLOAT; REFUSED(hs_vk_effect_prepare(effect, &prepare));
+    image.format = VK_FORMAT_UNDEFINED; REFUSED(hs_vk_effect_prepare(effect, &prepare));
+    image.format = VK_FORMAT_R32_UINT; REFUSED(hs_vk_effect_prepare(effect, &prepare));
+    image.format = VK_FORMAT_R8_UINT; REFUSED(hs_vk_effect_prepare(effect, &prepare));
     slot.maps = &image; slot.map_count = 1; CHECK(hs_vk_effect_prepare(effect, &prepare) != HS_OK);
     slot.map_count = UINT64_MAX; REFUSED(hs_vk_effect_prepare(effect, &prepare));
     slot.maps = NULL; slot.map_count = 0;
@@ -166,7 +170,8 @@ static void of_effects(hs_context *context) {
     WRONG_STRUCTURES(frame, hs_vk_effect_record(effect, commands, &frame));
     CHECK(hs_vk_effect_record(effect, commands, &frame) == HS_NOT_READY);
     REFUSED(hs_vk_effect_collect(NULL, 1));
-    OK(hs_vk_effect_collect(effect, UINT64_MAX));
+    REFUSED(hs_vk_effect_collect(effect, UINT64_MAX));
+    OK(hs_vk_effect_collect(effect, 0));
     hs_vk_effect_destroy(NULL);
     hs_vk_effect_destroy((hs_vk_effect *)(void *)context);
     hs_vk_effect_destroy(effect);
