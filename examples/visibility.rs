@@ -78,6 +78,7 @@ fn shot() -> Result<Shot> {
             up: DVec3::Y,
             vfov_deg: 40.0,
             aspect: None,
+            ortho_height: None,
             near: None,
         },
         width: WIDTH,

@@ -6,6 +6,8 @@
 #include "pass.glsl"
 #include "texture.glsl"
 
+layout(constant_id = 30) const bool ORTHOGRAPHIC = false;  // the camera's rays are parallel
+
 readonly BUFFER(frame);
 
 layout(location = 0) flat in vec4 plane;
@@ -25,16 +27,17 @@ vec3 linear_of(vec3 srgb) {
 // corners bound it.
 vec3 position_on_ray() {
     vec2 window = 2.0 * gl_FragCoord.xy / vec2(frame.size) - 1.0;
-    vec3 direction = frame.forward + frame.right * (window.x / dot(frame.right, frame.right))
-                   - frame.up * (window.y / dot(frame.up, frame.up));
+    vec3 aside = frame.right * (window.x / dot(frame.right, frame.right)) - frame.up * (window.y / dot(frame.up, frame.up));
+    vec3 start = ORTHOGRAPHIC ? aside : vec3(0.0);
+    vec3 direction = ORTHOGRAPHIC ? frame.forward : frame.forward + aside;
     float along = dot(plane.xyz, direction);
-    float z = along == 0.0 ? z_range.x : plane.w / along;
-    return direction * clamp(z, max(z_range.x, frame.near), max(z_range.y, frame.near));
+    float z = along == 0.0 ? z_range.x : (plane.w - dot(plane.xyz, start)) / along;
+    return start + direction * clamp(z, max(z_range.x, frame.near), max(z_range.y, frame.near));
 }
 
 void main() {
     Surface surface = surfaces[surface_index];
-    bool front = plane.w < 0.0;
+    bool front = (ORTHOGRAPHIC ? dot(plane.xyz, frame.forward) : plane.w) < 0.0;
     if (!front && surface.double_sided == 0u) discard;
     if (TEXTURED && is_hole(surface, uv)) discard;
     position_world = vec4(position_on_ray(), 1.0);

@@ -10,6 +10,8 @@ readonly BUFFER(triangle_surfaces);
 readonly BUFFER(texcoords);
 readonly BUFFER(triangle_planes);
 
+layout(constant_id = 30) const bool ORTHOGRAPHIC = false;  // the camera's rays are parallel
+
 layout(location = 0) flat out vec4 plane;    // unit normal of the front, and its product with any point of the triangle
 layout(location = 1) flat out vec2 z_range;  // [scene units] of the corners along the view axis
 layout(location = 2) out vec2 uv;
@@ -25,7 +27,9 @@ void main() {
     uint vertex = corner[uint(gl_VertexIndex) % 3u];
     surface_index = triangle_surfaces[triangle];
     uv = TEXTURED ? texcoords[vertex] : vec2(0.0);
-    // Reverse-Z without a far plane, from the eye at the origin.
+    // Reverse-Z from the eye at the origin, of a pinhole without a far plane.
     vec3 position = positions[vertex];
-    gl_Position = vec4(dot(position, frame.right), -dot(position, frame.up), frame.near, dot(position, frame.forward));
+    float along = dot(position, frame.forward);
+    vec2 depth = ORTHOGRAPHIC ? vec2((frame.far - along) / (frame.far - frame.near), 1.0) : vec2(frame.near, along);
+    gl_Position = vec4(dot(position, frame.right), -dot(position, frame.up), depth);
 }

@@ -36,6 +36,7 @@
 //!         up: DVec3::Y,
 //!         vfov_deg: 45.0,
 //!         aspect: None,
+//!         ortho_height: None,
 //!         near: None,
 //!     },
 //!     width: 64,

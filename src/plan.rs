@@ -65,6 +65,8 @@ pub struct Plan {
     pub textured: bool,
     /// The scene has alpha-masked triangles.
     pub masked: bool,
+    /// The camera's rays are parallel.
+    pub orthographic: bool,
     /// Some of its triangles cast no shadows.
     pub tells_casters: bool,
     /// All passes of a frame that draws every map.
@@ -96,6 +98,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
         textured: !shot.scene.textures.is_empty() && (outputs.picture || shot.scene.has_masked()),
         masked: shot.scene.has_masked(),
         tells_casters: shot.scene.tells_casters(),
+        orthographic: frustum.orthographic,
         ..Plan::empty(
             (shot.width, shot.height),
             frustum.frame(shot),
@@ -192,6 +195,7 @@ impl Plan {
             packet: settings.packet,
             textured: false,
             masked: false,
+            orthographic: false,
             tells_casters: false,
             graph: Graph::default(),
             retained: false,

@@ -244,8 +244,8 @@ impl<'a> Tracer<'a> {
     /// What the camera sees in a pixel's centre: not the back of single-sided surfaces, and nothing
     /// where a masked texture is transparent.
     fn receiver(&self, x: usize, y: usize, scratch: &mut Scratch) -> Option<Receiver> {
-        let direction = self.pinhole.direction(x, y);
-        let ray = Ray::new(DVec3::ZERO, direction);
+        let (start, direction) = self.pinhole.ray(x, y);
+        let ray = Ray::new(start, direction);
         let visible = |hit: &Hit| {
             let front = self.normal(hit.triangle).dot(direction) < 0.0;
             (front || self.double_sided(hit.triangle)) && hit.t > self.near && self.opaque(hit)

@@ -95,7 +95,7 @@ pub struct Texture {
     pub linear: bool,
 }
 
-/// A pinhole camera. Positions are in world space.
+/// A pinhole camera, or one of parallel rays. Positions are in world space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     pub name: String,
@@ -104,8 +104,10 @@ pub struct Camera {
     /// [scene units]
     pub target: DVec3,
     pub up: DVec3,
-    /// [degree] (0, 180) The full vertical field of view.
+    /// [degree] (0, 180) The full vertical field of view of a pinhole.
     pub vfov_deg: f64,
+    /// [scene units] (0, ...) Parallel rays: the height of what is seen; the field of view does not count then. None: a pinhole.
+    pub ortho_height: Option<f64>,
     /// Width / height that the file asks for, when it does.
     pub aspect: Option<f64>,
     /// [scene units] Along the view axis: what is nearer is not seen. None: everything in front of the eye is.

@@ -173,14 +173,16 @@ shared! {
     /// The camera and the size of the scene. Where the engine draws the surface, all positions on the device are relative
     /// to the camera's eye.
     struct Frame {
-        /// Unit vector divided by tan(fov / 2) · aspect.
+        /// Unit vector divided by tan(fov / 2) · aspect, or, where rays are parallel, by half the width of what is seen.
         right: vec3,
-        /// Unit vector divided by tan(fov / 2).
+        /// Unit vector divided by tan(fov / 2), or by half the height.
         up: vec3,
         /// Unit vector.
         forward: vec3,
         /// [scene units] Distance of the near plane.
         near: float,
+        /// [scene units] Distance beyond everything.
+        far: float,
         /// [pixel]
         size: uvec2,
         /// [triangle]

@@ -79,15 +79,21 @@ const UP_TOLERANCE: f64 = 1e-6;
 impl Camera {
     /// # Errors
     /// [`Error::Invalid`] when a number is not finite or beyond 10¹⁸, eye and target coincide, `up` has
-    /// no length or lies along the view direction, the field of view is not in (0, 180), or the near plane is not in
-    /// [0, 10¹⁸].
+    /// no length or lies along the view direction, the field of view is not in (0, 180), the height of what parallel rays see
+    /// is not in (0, 10¹⁸], or the near plane is not in [0, 10¹⁸].
     pub fn validate(&self) -> Result<()> {
         let vectors = [self.eye, self.target, self.up];
         let sane = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
         let view = (self.target - self.eye).try_normalize();
         let fault = match (view, self.up.try_normalize()) {
             _ if !vectors.iter().all(sane) => "its eye, target or up is not finite or beyond 1e18",
-            _ if !(self.vfov_deg > 0.0 && self.vfov_deg < 180.0) => {
+            _ if !self
+                .ortho_height
+                .is_none_or(|height| height > 0.0 && height <= MAX_COORDINATE) =>
+            {
+                "its ortho_height must be more than 0 and at most 1e18"
+            }
+            _ if self.ortho_height.is_none() && !(self.vfov_deg > 0.0 && self.vfov_deg < 180.0) => {
                 "its vertical field of view must be more than 0 and less than 180 degrees"
             }
             _ if !self

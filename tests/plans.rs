@@ -65,6 +65,7 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
             up: DVec3::Y,
             vfov_deg: 45.0,
             aspect: None,
+            ortho_height: None,
             near: None,
         },
         width: 64,

@@ -234,13 +234,13 @@ fn what_is_no_surface_is_left_out_and_noted() {
 }
 
 #[test]
-fn perspective_cameras() {
+fn cameras_of_both_kinds() {
     let mut gltf = Gltf::triangle();
     gltf.push(
         "cameras",
         json!({"type": "perspective", "perspective": {"yfov": 1.0, "aspectRatio": 1.5, "znear": 0.1}}),
     );
-    let lens = json!({"xmag": 1.0, "ymag": 1.0, "zfar": 9.0, "znear": 0.1});
+    let lens = json!({"xmag": 3.0, "ymag": 2.0, "zfar": 9.0, "znear": 0.5});
     gltf.push(
         "cameras",
         json!({"type": "orthographic", "orthographic": lens}),
@@ -251,11 +251,17 @@ fn perspective_cameras() {
         "camera": 0, "name": "eye", "translation": [5.0, 0.5, 0.0], "scale": [3.0, 3.0, 3.0],
         "rotation": [0.0, quarter, 0.0, quarter],
     }));
-    gltf.node(json!({"camera": 1}));
+    gltf.node(json!({"camera": 1, "scale": [9.0, 9.0, 9.0]}));
+    gltf.push("cameras", json!({"type": "orthographic"}));
+    gltf.node(json!({"camera": 2}));
     let scene = gltf.load().unwrap();
-    let [camera] = &scene.cameras[..] else {
-        panic!("one camera")
+    let [camera, parallel] = &scene.cameras[..] else {
+        panic!("two cameras")
     };
+    assert_eq!(
+        (parallel.ortho_height, parallel.aspect, parallel.near),
+        (Some(4.0), Some(1.5), Some(0.5))
+    );
     assert_eq!(
         (camera.name.as_str(), camera.eye),
         ("eye", DVec3::new(5.0, 0.5, 0.0))
@@ -264,7 +270,11 @@ fn perspective_cameras() {
     assert!(camera.up.distance(DVec3::Y) < 1e-9);
     assert!((camera.vfov_deg - 1f64.to_degrees()).abs() < 1e-9);
     assert_eq!(camera.aspect, Some(1.5));
-    assert!(noted(&scene, "not a perspective one"));
+    assert_eq!(camera.ortho_height, None);
+    assert!(noted(
+        &scene,
+        "neither a perspective nor an orthographic one"
+    ));
 }
 
 #[test]

@@ -174,6 +174,16 @@ fn nonsense_is_refused() {
     for size in [0, 32769] {
         assert!(error(|json| json["camera"]["width"] = size.into()).contains("pixels wide"));
     }
+    assert!(error(|json| json["camera"]["ortho_height"] = 2.into()).contains("either"));
+    assert!(error(|json| json["camera"]["vfov_deg"] = Value::Null).contains("either"));
+    let parallel = |height: f64| {
+        error(|json| {
+            json["camera"]["vfov_deg"] = Value::Null;
+            json["camera"]["ortho_height"] = height.into();
+        })
+    };
+    assert!(parallel(0.0).contains("ortho_height must be more than 0"));
+    assert!(parallel(-1.0).contains("ortho_height must be more than 0"));
     assert!(error(|json| json["lights"][0]["u"] = json!([3, 0, 0.01])).contains("perpendicular"));
     assert!(error(|json| json["lights"][0]["u"] = json!([0, 0, 0])).contains("a line"));
     assert!(error(|json| json["lights"][0]["u"] = Value::Null).contains("lacks \"u\""));

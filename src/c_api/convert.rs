@@ -134,6 +134,7 @@ pub fn camera(given: &hs_camera) -> CallResult<Camera> {
         up: DVec3::from_array(given.up),
         vfov_deg: given.vfov_deg,
         aspect: None,
+        ortho_height: None,
         near: None,
     };
     camera.validate()?;

@@ -54,6 +54,7 @@ fn shot_of(scene: &Arc<Scene>) -> Shot {
         up: glam::DVec3::Y,
         vfov_deg: 45.0,
         aspect: None,
+        ortho_height: None,
         near: None,
     });
     Shot {

@@ -1,4 +1,4 @@
-//! A pinhole camera's rays, from its eye.
+//! A camera's rays: those of a pinhole from its eye, or parallel ones.
 
 use glam::DVec3;
 
@@ -12,6 +12,8 @@ pub struct Pinhole {
     right: DVec3,
     /// To its upper border.
     up: DVec3,
+    /// Rays are parallel, and what is seen is as large at any distance.
+    orthographic: bool,
     /// [pixel]
     size: [f64; 2],
 }
@@ -33,24 +35,34 @@ impl Pinhole {
         if right == DVec3::ZERO {
             return Err(invalid("looks along its own up vector"));
         }
-        if !(camera.vfov_deg > 0.0 && camera.vfov_deg < 180.0) {
+        let half_height = match camera.ortho_height {
+            Some(height) => 0.5 * height,
+            None => (camera.vfov_deg.to_radians() / 2.0).tan(),
+        };
+        // Written so that NaN fails it; beyond 180° a tangent is negative.
+        if !(half_height > 0.0 && half_height.is_finite()) {
             return Err(invalid(
-                "needs a vertical field of view between 0° and 180°",
+                "needs a vertical field of view between 0° and 180°, or a height of more than 0",
             ));
         }
-        let half_height = (camera.vfov_deg.to_radians() / 2.0).tan();
         let size = [f64::from(width), f64::from(height)];
         Ok(Self {
             forward,
             right: right * (half_height * size[0] / size[1]),
             up: right.cross(forward) * half_height,
+            orthographic: camera.ortho_height.is_some(),
             size,
         })
     }
 
-    /// The direction (not normalised) through the centre of pixel (x, y); row 0 is at the top.
-    pub fn direction(&self, x: usize, y: usize) -> DVec3 {
+    /// Where the ray through the centre of pixel (x, y) starts, relative to the eye, and its direction, of length 1 along the
+    /// view axis; row 0 is at the top.
+    pub fn ray(&self, x: usize, y: usize) -> (DVec3, DVec3) {
         let along = |index: usize, size: f64| (index as f64 + 0.5) / size * 2.0 - 1.0;
-        self.forward + self.right * along(x, self.size[0]) - self.up * along(y, self.size[1])
+        let aside = self.right * along(x, self.size[0]) - self.up * along(y, self.size[1]);
+        match self.orthographic {
+            true => (aside, self.forward),
+            false => (DVec3::ZERO, self.forward + aside),
+        }
     }
 }

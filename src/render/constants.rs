@@ -14,6 +14,7 @@ pub fn of_frame(plan: &Plan) -> Constants {
             "GIVEN_SURFACE",
             matches!(plan.front, Front::Imported(_)).into(),
         ),
+        ("ORTHOGRAPHIC", plan.orthographic.into()),
         ("DENSE_LEVELS", plan.density.dense),
         ("SPARSEST", plan.density.sparsest),
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),

@@ -7,8 +7,8 @@
 use std::cell::Cell;
 
 use glam::{DAffine3, DVec3, Vec3};
+use gltf::json::Camera as CameraJson;
 use gltf::json::Node;
-use gltf::json::camera::Perspective;
 use gltf::json::extensions::scene::khr_lights_punctual::Type;
 use gltf::json::validation::Checked;
 use serde::Deserialize;
@@ -249,14 +249,11 @@ impl<'a> Emitters<'a> {
         let user = label("node", place.node.value(), node.name.as_deref());
         let json = self.document.get(index, "camera", &user)?;
         let name = label("camera", index.value(), json.name.as_deref());
-        let Some(Perspective {
-            yfov,
-            aspect_ratio,
-            znear,
-            ..
-        }) = json.perspective
-        else {
-            notes.add("a camera that is not a perspective one is left out", &name);
+        let Some((vfov_deg, ortho_height, aspect, near)) = projection(json) else {
+            notes.add(
+                "a camera that is neither a perspective nor an orthographic one is left out",
+                &name,
+            );
             return Ok(None);
         };
         let frame = Frame::of(&place.world);
@@ -273,11 +270,30 @@ impl<'a> Emitters<'a> {
             eye,
             target: eye + frame.forward * distance,
             up: frame.up,
-            vfov_deg: f64::from(yfov).to_degrees(),
-            aspect: aspect_ratio.map(f64::from),
-            near: Some(f64::from(znear)),
+            vfov_deg,
+            ortho_height,
+            aspect,
+            near: Some(near),
         }))
     }
+}
+
+/// [degree, scene units, width / height, scene units] Field of view, height of what parallel rays see, aspect ratio and near
+/// plane of a camera. A negative extent mirrors the picture, which is not done here.
+fn projection(json: &CameraJson) -> Option<(f64, Option<f64>, Option<f64>, f64)> {
+    let of = |value: f32| f64::from(value);
+    if let Some(pinhole) = &json.perspective {
+        let aspect = pinhole.aspect_ratio.map(of);
+        return Some((
+            of(pinhole.yfov).to_degrees(),
+            None,
+            aspect,
+            of(pinhole.znear),
+        ));
+    }
+    let parallel = json.orthographic.as_ref()?;
+    let (x, y) = (of(parallel.xmag).abs(), of(parallel.ymag).abs());
+    Some((0.0, Some(2.0 * y), Some(x / y), of(parallel.znear)))
 }
 
 /// The directions of a node in world space, orthonormal whatever its scale.

@@ -54,7 +54,8 @@ struct CameraFile {
     target: [f64; 3],
     #[serde(default = "y_axis")]
     up: [f64; 3],
-    vfov_deg: f64,
+    vfov_deg: Option<f64>,
+    ortho_height: Option<f64>,
     width: Option<u32>,
     height: Option<u32>,
 }
@@ -211,7 +212,10 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
             draft.notes.push(note.into());
         }
         draft.size = Size(camera.width, camera.height);
-        draft.camera = Some(camera.into());
+        let camera = camera
+            .into_camera()
+            .map_err(|message| Error::parse(path, message))?;
+        draft.camera = Some(camera);
     }
     for (index, light) in lights.into_iter().enumerate() {
         if let Some(texture) = &light.texture {
@@ -345,17 +349,24 @@ fn scene_camera(scene: &Scene, index: Option<usize>) -> Result<Camera, String> {
     }
 }
 
-impl From<CameraFile> for Camera {
-    fn from(file: CameraFile) -> Self {
-        Self {
+impl CameraFile {
+    fn into_camera(self) -> Result<Camera, &'static str> {
+        let vfov_deg = match (self.vfov_deg, self.ortho_height) {
+            (Some(vfov_deg), None) => vfov_deg,
+            // Of no meaning to parallel rays.
+            (None, Some(_)) => 0.0,
+            _ => return Err("its camera needs either \"vfov_deg\" or \"ortho_height\""),
+        };
+        Ok(Camera {
             name: "camera".into(),
-            eye: DVec3::from(file.eye),
-            target: DVec3::from(file.target),
-            up: DVec3::from(file.up),
-            vfov_deg: file.vfov_deg,
+            eye: DVec3::from(self.eye),
+            target: DVec3::from(self.target),
+            up: DVec3::from(self.up),
+            vfov_deg,
+            ortho_height: self.ortho_height,
             aspect: None,
             near: None,
-        }
+        })
     }
 }
 

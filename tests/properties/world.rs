@@ -203,3 +203,30 @@ fn a_point_without_direction_casts_shadows_to_all_sides() {
         assert!(apart <= 15, "{apart} pixels");
     });
 }
+
+/// Parallel rays see what a pinhole sees from very far away, and what rays see that are traced.
+#[test]
+fn parallel_rays() {
+    let mut shot = shot_with(&[], 1.0);
+    // A hair beside the corners and edges of the box, which rays would meet exactly.
+    shot.camera.ortho_height = Some(4.7);
+    let mut far = shot.clone();
+    let (away, distance) = (1e4, shot.camera.eye.distance(shot.camera.target));
+    let back = (shot.camera.eye - shot.camera.target) / distance;
+    far.camera.eye = shot.camera.target + back * away;
+    far.camera.ortho_height = None;
+    far.camera.vfov_deg = 2.0 * (0.5 * 4.7 / away).atan().to_degrees();
+    with_gpu(|gpu| {
+        let (parallel, pinhole) = (visibility(gpu, &shot), visibility(gpu, &far));
+        let pairs = parallel.iter().zip(&pinhole);
+        let apart = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || (**a - **b).abs() > 0.02;
+        let differ = pairs.filter(apart).count();
+        // Edges of the box and of the ground run between pixels.
+        assert!(differ <= 40, "{differ} pixels differ");
+        let seen = parallel.iter().filter(|value| !value.is_nan()).count();
+        assert!(seen > 2000, "{seen} pixels see something");
+        let truth = traced(&shot, 256);
+        let error = error(gpu, &shot, &truth);
+        assert!(error < 0.01, "{error}");
+    });
+}

@@ -81,6 +81,7 @@ pub fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
         up: -DVec3::Z,
         vfov_deg: VFOV_DEG,
         aspect: None,
+        ortho_height: None,
         near: None,
     };
     let (width, height) = SIZE;

@@ -212,6 +212,7 @@ pub fn camera(eye: DVec3, target: DVec3, vfov_deg: f64) -> Camera {
         up: if down { DVec3::NEG_Z } else { DVec3::Y },
         vfov_deg,
         aspect: None,
+        ortho_height: None,
         near: None,
     }
 }

@@ -165,6 +165,7 @@ impl Stage {
                 up: DVec3::Y,
                 vfov_deg: 2.0 * (reach / CAMERA).atan().to_degrees(),
                 aspect: None,
+                ortho_height: None,
                 near: None,
             },
             width: side,

@@ -125,9 +125,9 @@ fn ground(shot: &Shot) -> Result<Vec<Option<DVec3>>> {
     let pinhole = Pinhole::new(&shot.camera, shot.width, shot.height)?;
     let mut stack = Vec::new();
     let mut point = |x, y| {
-        let direction = pinhole.direction(x, y);
-        let hit = bvh.nearest(&Ray::new(DVec3::ZERO, direction), &mut stack, |_| true)?;
-        let point = shot.origin() + direction * hit.t;
+        let (start, direction) = pinhole.ray(x, y);
+        let hit = bvh.nearest(&Ray::new(start, direction), &mut stack, |_| true)?;
+        let point = shot.origin() + start + direction * hit.t;
         (point.y.abs() <= GROUND_HEIGHT).then_some(point)
     };
     let (width, height) = (shot.width as usize, shot.height as usize);

@@ -152,6 +152,7 @@ impl Stage {
             up: DVec3::Y,
             vfov_deg: 40.0,
             aspect: None,
+            ortho_height: None,
             near: None,
         };
         Case {
