@@ -18,8 +18,9 @@ pub const FIG14: Experiment = Experiment {
     here: "the square turned and a torus knot under a light half as large, half way up, maps of 32 to 512 texels: equation 4 holds \
            up to 128 texels; 128x128 pixels of which those on the ground count",
     missing: "",
-    differs: "lavapipe truncates the sums that blending leaves in 16 bits, where a GPU of today rounds them: it loses shares twice as \
-              large; models, their places and sizes are not the paper's",
+    differs: "lavapipe truncates sums in 16 bits, so that each addition loses half a step on the mean and errors grow with the number \
+              of patches before equation 4 fails, where a device that rounds loses nothing; models, their places and sizes are not \
+              the paper's",
     abscissa: "map",
     columns: &[ERROR, SHADOW_PIXELS],
     frames: 1,
