@@ -19,6 +19,7 @@ fn main() {
     println!("cargo:rerun-if-changed=glsl");
     println!("cargo:rerun-if-changed=src/shared.rs");
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
+    clear_shaders(&out);
     let header = shared_header();
     // Validation layers that rewrite shaders break some loops of optimized ones.
     println!("cargo:rerun-if-env-changed={UNOPTIMIZED}");
@@ -57,6 +58,15 @@ fn main() {
     fs::write(out.join("shaders.rs"), table).expect("OUT_DIR is writable");
     name_shared_library();
     println!("cargo:rustc-env=HALFSHADE_COMMIT={}", commit());
+}
+
+/// Removes what earlier builds have compiled: a test reads all that is there, and a shader may be gone.
+fn clear_shaders(out: &Path) {
+    let files = fs::read_dir(out).into_iter().flatten().flatten();
+    let compiled = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "spv");
+    for path in files.map(|file| file.path()).filter(compiled) {
+        fs::remove_file(path).expect("OUT_DIR is writable");
+    }
 }
 
 /// The commit that is built, with a "+" when files differ from it; "unknown" outside of a repository.
