@@ -35,16 +35,18 @@ impl Pinhole {
         if right == DVec3::ZERO {
             return Err(invalid("looks along its own up vector"));
         }
+        // Written so that NaN fails them.
         let half_height = match camera.ortho_height {
-            Some(height) => 0.5 * height,
-            None => (camera.vfov_deg.to_radians() / 2.0).tan(),
+            Some(height) if height > 0.0 && height.is_finite() => 0.5 * height,
+            None if camera.vfov_deg > 0.0 && camera.vfov_deg < 180.0 => {
+                (0.5 * camera.vfov_deg.to_radians()).tan()
+            }
+            _ => {
+                return Err(invalid(
+                    "needs a vertical field of view between 0° and 180°, or a height of more than 0",
+                ));
+            }
         };
-        // Written so that NaN fails it; beyond 180° a tangent is negative.
-        if !(half_height > 0.0 && half_height.is_finite()) {
-            return Err(invalid(
-                "needs a vertical field of view between 0° and 180°, or a height of more than 0",
-            ));
-        }
         let size = [f64::from(width), f64::from(height)];
         Ok(Self {
             forward,

@@ -258,6 +258,7 @@ fn what_cannot_be_traced_is_an_error() {
         |shot: &mut Shot| shot.camera.target = shot.camera.eye,
         |shot: &mut Shot| shot.camera.up = DVec3::Y,
         |shot: &mut Shot| shot.camera.vfov_deg = 180.0,
+        |shot: &mut Shot| shot.camera.ortho_height = Some(0.0),
         |shot: &mut Shot| shot.lights[0].center.x = f64::NAN,
         |shot: &mut Shot| {
             shot.lights[0].shape = LightShape::Disc {
