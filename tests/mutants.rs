@@ -1,5 +1,5 @@
 //! Mutants of good files: an error of one sentence or a sound scene, soon, and without taking more memory than
-//! the file is worth. `HALFSHADE_SLOW=1` tries 60,000 instead of some thousand.
+//! the file is worth. `HALFSHADE_SLOW=1` tries 80,000 instead of some thousand.
 
 mod support;
 
