@@ -527,10 +527,12 @@ hs_result hs_vk_effect_record(struct hs_vk_effect *effect,
                               VkCommandBuffer command_buffer,
                               const struct hs_vk_frame *frame);
 
-// Lets go of what only frames up to `completed_serial`, which the device has finished, have used.
+// Lets go of what only frames up to `completed_serial`, which the device has finished, have used. A frame that was not
+// recorded yet is refused.
 //
 // Any thread; calls on one effect wait for one another.
-hs_result hs_vk_effect_collect(struct hs_vk_effect *effect, uint64_t completed_serial);
+hs_result hs_vk_effect_collect(struct hs_vk_effect *effect,
+                               uint64_t completed_serial);
 
 // Tells what an effect has.
 //

@@ -74,7 +74,7 @@ pub struct Renderer {
     resources: Resources,
     chain: Chain,
     recorder: Recorder,
-    /// The last frame's map and MSSM are still there.
+    /// The last frame's map and hierarchy are still there.
     retained: bool,
 }
 
@@ -154,7 +154,7 @@ impl Renderer {
         Ok(Frame { timings, plan })
     }
 
-    /// Renders a frame of which one view alone is left, so that what the views share (map, MSSM, kernels, lists,
+    /// Renders a frame of which one view alone is left, so that what the views share (map, hierarchy, kernels, lists,
     /// occlusion) can be read as that view leaves it. The next frame draws every map anew.
     ///
     /// # Errors

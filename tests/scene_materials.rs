@@ -155,14 +155,7 @@ fn images_come_from_files_views_and_data_uris() {
     gltf.push("textures", json!({"source": 1, "sampler": 0}));
     for texture in 0..2 {
         let material = textured(&mut gltf, texture, json!({}));
-        let texcoord = gltf.texcoords(&[[0.0; 2]; 3]);
-        let position = gltf.positions(&SQUARE[..3]);
-        let attributes = json!({"TEXCOORD_0": texcoord});
-        add_primitive(
-            &mut gltf,
-            position,
-            json!({"attributes": attributes, "material": material}),
-        );
+        add_textured_triangle(&mut gltf, material);
     }
     // The buffer is a file of its own too.
     std::fs::write(folder.path().join("data.bin"), &gltf.bytes).unwrap();

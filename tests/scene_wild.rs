@@ -175,14 +175,7 @@ fn surface(image: Value, material: Value) -> Gltf {
     for (key, value) in material.as_object().unwrap() {
         gltf.json["materials"][index][key] = value.clone();
     }
-    let texcoord = gltf.texcoords(&[[0.0; 2]; 3]);
-    let position = gltf.positions(&SQUARE[..3]);
-    let attributes = json!({"TEXCOORD_0": texcoord});
-    add_primitive(
-        &mut gltf,
-        position,
-        json!({"attributes": attributes, "material": index}),
-    );
+    add_textured_triangle(&mut gltf, index);
     gltf
 }
 
@@ -239,14 +232,7 @@ fn surfaces_that_blend() {
         gltf.json["materials"][index]["alphaMode"] = "BLEND".into();
         gltf.json["materials"][index]["pbrMetallicRoughness"]["baseColorFactor"] =
             json!([1, 1, 1, factor]);
-        let texcoord = gltf.texcoords(&[[0.0; 2]; 3]);
-        let position = gltf.positions(&SQUARE[..3]);
-        let attributes = json!({"TEXCOORD_0": texcoord});
-        add_primitive(
-            &mut gltf,
-            position,
-            json!({"attributes": attributes, "material": index}),
-        );
+        add_textured_triangle(&mut gltf, index);
         let options = LoadOptions {
             blend,
             ..LoadOptions::default()

@@ -140,7 +140,8 @@ pub unsafe extern "C" fn hs_vk_effect_record(
     })
 }
 
-/// Lets go of what only frames up to `completed_serial`, which the device has finished, have used.
+/// Lets go of what only frames up to `completed_serial`, which the device has finished, have used. A frame that was not
+/// recorded yet is refused.
 ///
 /// Any thread; calls on one effect wait for one another.
 #[unsafe(no_mangle)]

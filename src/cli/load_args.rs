@@ -15,8 +15,8 @@ pub struct LoadArgs {
     #[arg(long)]
     allow_outside_paths: bool,
     /// What surfaces of alphaMode BLEND are: opaque (but where alpha is 0), left out, or cut at their alphaCutoff
-    #[arg(long, value_name = "RULE", value_enum, default_value_t = BlendArg::Opaque)]
-    blend: BlendArg,
+    #[arg(long, value_name = "RULE", value_enum, default_value_t)]
+    blend: Blend,
     /// Take materials as opaque whose texture decides where light passes and cannot be read
     #[arg(long)]
     allow_missing: bool,
@@ -37,29 +37,12 @@ pub struct LoadArgs {
     max_expansion: u64,
 }
 
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum BlendArg {
-    Opaque,
-    Ignore,
-    Mask,
-}
-
-impl From<BlendArg> for Blend {
-    fn from(blend: BlendArg) -> Self {
-        match blend {
-            BlendArg::Opaque => Self::Opaque,
-            BlendArg::Ignore => Self::Ignore,
-            BlendArg::Mask => Self::Mask,
-        }
-    }
-}
-
 impl LoadArgs {
     pub fn overrides(&self) -> Overrides {
         Overrides {
             size: self.size,
             outside_paths: self.allow_outside_paths,
-            blend: self.blend.into(),
+            blend: self.blend,
             allow_missing: self.allow_missing,
             limits: Limits {
                 max_triangles: self.max_triangles,

@@ -123,7 +123,7 @@ impl Plan {
         if recipe.kernels && self.levels < wanted {
             self.omit(
                 format!("{name}: hierarchy levels {} to {}", self.levels, wanted - 1),
-                "the device's largest buffer does not hold them; larger kernels start from more roots",
+                "the device's largest image does not hold them; larger kernels start from more roots",
             );
         }
     }

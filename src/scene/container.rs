@@ -15,6 +15,9 @@ pub(super) type Bytes<'a> = Cow<'a, [u8]>;
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 
+/// In UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 const JSON: &[u8] = b"JSON";
 const BINARY: &[u8] = b"BIN\0";
 
@@ -63,7 +66,7 @@ pub(super) fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Optio
 
 /// A JSON text without a byte-order mark before it and without zeros after it.
 fn tidy(text: &[u8]) -> &[u8] {
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let end = text.iter().rposition(|&byte| byte != 0);
     &text[..end.map_or(0, |last| last + 1)]
 }
@@ -84,42 +87,61 @@ pub(super) fn check_version(path: &Path, json: &[u8]) -> Result<()> {
     }
 }
 
+/// Files that are no glTF, by how their text begins in any case, and what to do about them.
+const OTHER_KINDS: [(&[&[u8]], &str); 9] = [
+    (
+        &[b"<!doctype html", b"<html"],
+        "is a web page, not a glTF file; download the file itself, not the page that shows it",
+    ),
+    (
+        &[b"<?xml", b"<collada"],
+        "is an XML file (COLLADA, X3D?), not a glTF file; convert it to glTF 2.0",
+    ),
+    (
+        &[b"version https://git-lfs"],
+        "is a pointer of Git LFS, not the file itself; run `git lfs pull` where it comes from",
+    ),
+    (
+        &[b"Kaydara FBX Binary", b"; FBX"],
+        "is an FBX file; convert it to glTF 2.0, as Blender does",
+    ),
+    (
+        &[b"PXR-USDC", b"#usda"],
+        "is a USD file; convert it to glTF 2.0, as Blender does",
+    ),
+    (
+        &[b"PK\x03\x04"],
+        "is a zip archive (USDZ, 3MF?); unpack it, and give the glTF file in it",
+    ),
+    (&[b"\x1f\x8b"], "is compressed with gzip; unpack it"),
+    (&[b"BLENDER"], "is a Blender file; export it as glTF 2.0"),
+    (
+        &[b"ply\n", b"ply\r", b"solid "],
+        "is a PLY or STL file; convert it to glTF 2.0",
+    ),
+];
+
 /// What a file is that is certainly no glTF, and what to do about it.
-fn another_kind(bytes: &[u8]) -> Option<String> {
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+fn another_kind(bytes: &[u8]) -> Option<&'static str> {
+    if bytes.is_empty() {
+        return Some("is empty; was it downloaded or exported to the end?");
+    }
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Some("is text in UTF-16; save it as UTF-8");
+    }
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     let text = text.trim_ascii_start();
-    let begins = |with: &[u8]| {
-        text.get(..with.len())
-            .is_some_and(|start| start.eq_ignore_ascii_case(with))
+    let begins = |with: &&[u8]| {
+        let start = text.get(..with.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(with))
     };
-    let what = if bytes.is_empty() {
-        "is empty; was it downloaded or exported to the end?"
-    } else if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        "is text in UTF-16; save it as UTF-8"
-    } else if begins(b"<!doctype html") || begins(b"<html") {
-        "is a web page, not a glTF file; download the file itself, not the page that shows it"
-    } else if begins(b"<?xml") || begins(b"<collada") {
-        "is an XML file (COLLADA, X3D?), not a glTF file; convert it to glTF 2.0"
-    } else if begins(b"version https://git-lfs") {
-        "is a pointer of Git LFS, not the file itself; run `git lfs pull` where it comes from"
-    } else if begins(b"Kaydara FBX Binary") || begins(b"; FBX") {
-        "is an FBX file; convert it to glTF 2.0, as Blender does"
-    } else if begins(b"PXR-USDC") || begins(b"#usda") {
-        "is a USD file; convert it to glTF 2.0, as Blender does"
-    } else if begins(b"PK\x03\x04") {
-        "is a zip archive (USDZ, 3MF?); unpack it, and give the glTF file in it"
-    } else if begins(b"\x1f\x8b") {
-        "is compressed with gzip; unpack it"
-    } else if begins(b"BLENDER") {
-        "is a Blender file; export it as glTF 2.0"
-    } else if begins(b"ply\n") || begins(b"ply\r") || begins(b"solid ") {
-        "is a PLY or STL file; convert it to glTF 2.0"
-    } else if is_wavefront(text) {
-        "is a Wavefront OBJ file; convert it to glTF 2.0, as Blender does"
-    } else {
-        return None;
-    };
-    Some(what.into())
+    let known = OTHER_KINDS
+        .iter()
+        .find(|(starts, _)| starts.iter().any(begins));
+    known.map(|(_, what)| *what).or_else(|| {
+        is_wavefront(text)
+            .then_some("is a Wavefront OBJ file; convert it to glTF 2.0, as Blender does")
+    })
 }
 
 /// Whether the first lines that say anything are those of an OBJ.

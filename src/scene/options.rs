@@ -23,6 +23,7 @@ pub struct LoadOptions {
 
 /// What materials of alphaMode BLEND are to shadows, which know no half-transparent surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Blend {
     /// Opaque, but where the alpha of their texture is 0.
     #[default]

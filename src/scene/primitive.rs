@@ -175,6 +175,9 @@ impl<'a> Source<'a> {
 
     /// Mesh space to world space at a vertex: of the instance at `place`, or by its joints.
     fn world(&self, place: &DAffine3, vertex: usize) -> DAffine3 {
+        if self.joints.is_empty() {
+            return *place;
+        }
         let mut sum = DAffine3::ZERO;
         let mut weights = 0.0;
         for (joints, shares) in &self.influences {
@@ -190,9 +193,6 @@ impl<'a> Source<'a> {
                 sum.translation += matrix.translation * share;
                 weights += share;
             }
-        }
-        if self.joints.is_empty() {
-            return *place;
         }
         if weights == 0.0 {
             return self.joints[0];

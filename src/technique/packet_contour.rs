@@ -1,4 +1,4 @@
-//! Packet-based hierarchical contours [Yang09]: coherent packets share the walk through the MSSM and the
+//! Packet-based hierarchical contours [Yang09]: coherent packets share the walk through the hierarchy and the
 //! extraction of contour edges; what is left over is integrated pixel by pixel.
 //!
 //! Right: the same visibility as [GBP07], at a fraction of its cost. Wrong: what a single view per

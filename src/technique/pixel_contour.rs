@@ -1,9 +1,9 @@
-//! Contours pixel by pixel [GBP07, as re-implemented in Yang09 §6]: with tight kernels from the MSSM,
+//! Contours pixel by pixel [GBP07, as re-implemented in Yang09 §6]: with tight kernels from the hierarchy,
 //! without the adaptive precision of the original, which trades quality. DEVIATION as in `packet_contour`: samples below
 //! the receiver's plane do not occlude.
 //!
 //! Right and wrong as `packet_contour`, whose baseline it is: flat over every cell of the kernel, or
-//! hierarchical over the MSSM.
+//! hierarchical over the hierarchy.
 
 use super::{
     CLASSIFY, CONTOUR_BIAS, KERNELS, Method, PIXELS, Recipe, Settings, TURNS_OF_WALKS, once, with,

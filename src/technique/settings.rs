@@ -378,11 +378,11 @@ settings! {
         )
         .sets("FOOTPRINT");
 
-    /// `PixelContour` only: walk the MSSM instead of every cell.
+    /// `PixelContour` only: walk the hierarchy instead of every cell.
     hierarchical: bool = false,
         Row::switch(
             "hierarchical",
-            "With pixel-contour: walk the MSSM instead of every cell of the kernel",
+            "With pixel-contour: walk the hierarchy instead of every cell of the kernel",
         );
 
     /// `Micropatch…` only: patches reach out to where their left and bottom neighbours end.

@@ -1,4 +1,4 @@
-//! What a view's occluders hide of its sub-light (algorithm.md §1–3), derived from the geometry in f64: no MSSM,
+//! What a view's occluders hide of its sub-light (algorithm.md §1–3), derived from the geometry in f64: no hierarchy,
 //! no perimeter parameter, no sector table. Contour vertices are lifted to space and projected from the
 //! receiver onto the light plane; what lies beyond a segment is a polygon, cut out of the light's outline.
 //!

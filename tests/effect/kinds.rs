@@ -20,7 +20,7 @@ use super::{
 const DEPTHS: [vk::Format; 2] = [vk::Format::D32_SFLOAT, vk::Format::D32_SFLOAT_S8_UINT];
 
 /// A frame of the stage's meshes with the slot's images; `change` says what is different about it.
-fn frame_of(
+pub fn frame_of(
     host: &mut Host,
     stage: &Stage,
     surface: Surface,
@@ -46,8 +46,9 @@ fn frame_of(
     visibility(host, slot)
 }
 
-/// Where the camera sees a point, z/w reversed and without a far plane.
-fn clip_from_positions(stage: &Stage) -> DMat4 {
+/// Where the camera sees a point. `depth`: the row of the matrix that z comes from, given the one of the distance along the view
+/// axis, which w comes from.
+pub fn clip_from_positions(stage: &Stage, depth: impl FnOnce(DVec4) -> DVec4) -> DMat4 {
     let camera = &stage.shot.camera;
     let origin = stage.shot.origin();
     let (eye, target) = (camera.eye - origin, camera.target - origin);
@@ -56,13 +57,14 @@ fn clip_from_positions(stage: &Stage) -> DMat4 {
     let down = forward.cross(right);
     let focal = 1.0 / (0.5 * camera.vfov_deg).to_radians().tan();
     let row = |axis: DVec3| axis.extend(-axis.dot(eye));
-    let (x, y) = (focal * row(right), focal * row(down));
-    DMat4::from_cols(x, y, DVec4::W * 0.1, row(forward)).transpose()
+    let (x, y, along) = (focal * row(right), focal * row(down), row(forward));
+    DMat4::from_cols(x, y, depth(along), along).transpose()
 }
 
 /// Depths in each format give what the positions give that they stand for.
 pub fn check_depths(host: &mut Host, stage: &Stage) {
-    let clip = clip_from_positions(stage);
+    // Reversed, without a far plane.
+    let clip = clip_from_positions(stage, |_| DVec4::W * 0.1);
     let world_from_clip = clip.inverse();
     let depth_of = |position: &[f32; 4]| {
         let point = DVec4::from_array(position.map(f64::from));

@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 use ash::vk;
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use halfshade::frame::{Casters, Surface};
+use halfshade::frame::Surface;
 use halfshade::gpu::Gpu;
-use halfshade::plan::HostFrame;
-use halfshade::render::{FrameInput, SlotImages};
+use halfshade::render::SlotImages;
 use halfshade::scene::LightShape;
 use halfshade::technique::{Settings, Technique};
 
 use super::host::Host;
-use super::{
-    IDENTITY, OwnCasters, PIXELS, SIDE, Stage, prepared, record, settings, visibility, with_frame,
-};
+use super::kinds::{clip_from_positions, frame_of};
+use super::{PIXELS, SIDE, Stage, settings};
+
+/// [scene units] The far plane.
+const FAR: f64 = 1e4;
 
 /// [visibility] What an engine would not see.
 const UNSEEN: f32 = 0.05;
@@ -43,20 +44,6 @@ fn half(value: f32) -> u16 {
     sign | bits as u16
 }
 
-/// Where the camera sees a point: z/w from 0 at `near` to 1 at `far`, or the other way round.
-fn clip_from_positions(stage: &Stage, near: f64, far: f64) -> DMat4 {
-    let camera = &stage.shot.camera;
-    let origin = stage.shot.origin();
-    let (eye, target) = (camera.eye - origin, camera.target - origin);
-    let forward = (target - eye).normalize();
-    let right = forward.cross(camera.up).normalize();
-    let down = forward.cross(right);
-    let focal = 1.0 / (0.5 * camera.vfov_deg).to_radians().tan();
-    let row = |axis: DVec3| axis.extend(-axis.dot(eye));
-    let depth = (row(forward) * far - DVec4::W * (far * near)) / (far - near);
-    DMat4::from_cols(focal * row(right), focal * row(down), depth, row(forward)).transpose()
-}
-
 /// Depths with standard Z, each through `stored`, which says what the format keeps of them.
 fn depths<T: bytemuck::NoUninit>(
     stage: &Stage,
@@ -64,7 +51,9 @@ fn depths<T: bytemuck::NoUninit>(
     near: f64,
     stored: impl Fn(f64) -> T,
 ) -> Lent {
-    let clip = clip_from_positions(stage, near, 1e4);
+    let clip = clip_from_positions(stage, |along| {
+        (along * FAR - DVec4::W * (FAR * near)) / (FAR - near)
+    });
     let world_from_clip = clip.inverse();
     let depth = |(index, position): (usize, &[f32; 4])| {
         if position[3] == 0.0 {
@@ -129,28 +118,6 @@ fn all(stage: &Stage) -> Vec<Lent> {
     ]
 }
 
-fn image_of(
-    host: &mut Host,
-    stage: &Stage,
-    shape: &HostFrame,
-    slot: &SlotImages,
-    change: impl FnOnce(&mut FrameInput),
-) -> Vec<f32> {
-    let meshes = stage.meshes(host);
-    let mut effect = prepared(host, shape.clone(), slot, &meshes);
-    with_frame(
-        &stage.light(),
-        meshes.len(),
-        1,
-        OwnCasters::default(),
-        |frame| {
-            change(frame);
-            record(host, &mut effect, frame)
-        },
-    );
-    visibility(host, slot)
-}
-
 /// The lowest of a pixel and its neighbours.
 fn lowest_around(image: &[f32], index: usize) -> f32 {
     let side = SIDE as i32;
@@ -176,20 +143,15 @@ fn check_tilt(host: &mut Host, device: &Arc<Gpu>, technique: Technique, degrees:
         };
     });
     let slot = stage.slot(host, Vec::new());
-    let exact = image_of(host, &stage, &stage.frame(Casters::Gathered), &slot, |_| {});
+    let exact = frame_of(host, &stage, Surface::Positions, &slot, |_| {});
     for lent in all(&stage) {
-        let shape = HostFrame {
-            surface: lent.surface,
-            ..stage.frame(Casters::Gathered)
-        };
         let slot = SlotImages {
             surface: host.image(lent.format, (SIDE, SIDE), &lent.texels),
             ..stage.slot(host, Vec::new())
         };
-        let found = image_of(host, &stage, &shape, &slot, |frame| {
+        let found = frame_of(host, &stage, lent.surface, &slot, |frame| {
             frame.world_from_clip = lent.world_from_clip.as_mat4().to_cols_array_2d();
             frame.depth_empty = lent.empty;
-            frame.normal_to_world = IDENTITY;
         });
         let mut lit = 0;
         for (index, &value) in found.iter().enumerate() {

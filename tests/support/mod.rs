@@ -319,6 +319,15 @@ pub fn add_primitive(gltf: &mut Gltf, position: usize, mut primitive: Value) {
     gltf.mesh(primitive);
 }
 
+/// A mesh of one triangle with texture coordinates, all 0, of a material.
+pub fn add_textured_triangle(gltf: &mut Gltf, material: usize) {
+    let texcoord = gltf.texcoords(&[[0.0; 2]; 3]);
+    let position = gltf.positions(&SQUARE[..3]);
+    let attributes = json!({"TEXCOORD_0": texcoord});
+    let primitive = json!({"attributes": attributes, "material": material});
+    add_primitive(gltf, position, primitive);
+}
+
 /// A material with this base-colour texture and further properties of the texture's use.
 pub fn textured(gltf: &mut Gltf, texture: usize, mut info: Value) -> usize {
     info["index"] = texture.into();
