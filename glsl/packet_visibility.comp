@@ -17,16 +17,10 @@ bool is_pruned(View view, Packet packet, ivec2 node, int side, vec2 bounds) {
     return FOOTPRINT && !OBLIQUE && misses_light(view, packet, kappa, node, side, bounds.y);
 }
 
-uint mask_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
-    vec2 at = vec2(cell);
-    vec2 a = limits_in(packet, at, at);
-    vec2 b = limits_in(packet, at + vec2(1.0, 0.0), at + vec2(1.0, 0.0));
-    vec2 c = limits_in(packet, at + vec2(1.0, 1.0), at + vec2(1.0, 1.0));
-    vec2 d = limits_in(packet, at + vec2(0.0, 1.0), at + vec2(0.0, 1.0));
-    uint mask = mask_of(depths, vec4(a.y, b.y, c.y, d.y));
-    agreed = mask == mask_of(depths, vec4(a.x, b.x, c.x, d.x));
-    return mask;
-}
+// `classify` sends them to the pixel list.
+bool is_behind(Packet packet) { return false; }
+
+uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) { return mask_in(packet, cell, depths, agreed); }
 
 // Extracts edges until the batch is full, the walk ends, or the pixels disagree about a cell's contour; that cell is left to
 // the caller. Returns the number of edges.

@@ -10,12 +10,12 @@
 
 Packet packet_of_pixel() {
     Receiver receiver = pixel.receiver;
-    // Seen from behind its plane, no sample is so near to the light that it must occlude.
-    float depth_max = receiver.behind ? 1e30 : receiver.biased;
-    vec2 plane = receiver.behind ? vec2(0.0) : receiver.plane;
-    return Packet(pixel.index, packed(pixel.first), packed(pixel.last), receiver.biased, depth_max, receiver.d,
-                  receiver.t.xyxy, receiver.t, vec2(receiver.biased), plane.xyxy);
+    float plane_depth = plane_depth_of(receiver);
+    return Packet(pixel.index, packed(pixel.first), packed(pixel.last), receiver.biased, receiver.biased, receiver.d,
+                  receiver.t.xyxy, receiver.t, vec2(plane_depth), receiver.plane.xyxy);
 }
+
+bool is_behind(Packet packet) { return pixel.receiver.behind; }
 
 // As `misses_light`, for a map that is not parallel to the light: through the middle and the reach of the node's box.
 bool misses_light_obliquely(View view, Receiver receiver, ivec2 node, int side, float depth_max) {
@@ -31,14 +31,14 @@ bool misses_light_obliquely(View view, Receiver receiver, ivec2 node, int side, 
 
 bool is_pruned(View view, Packet packet, ivec2 node, int side, vec2 bounds) {
     Receiver receiver = pixel.receiver;
-    bool pruned = receiver.behind && one_side_of_ceiling(receiver, node, side, bounds);
+    bool pruned = false;
     vec2 kappa = vec2(receiver.ku.x, receiver.kv.y);
-    if (FOOTPRINT && OBLIQUE) pruned = pruned || misses_light_obliquely(view, receiver, node, side, bounds.y);
-    if (FOOTPRINT && !OBLIQUE) pruned = pruned || misses_light(view, packet, kappa, node, side, bounds.y);
+    if (FOOTPRINT && OBLIQUE) pruned = misses_light_obliquely(view, receiver, node, side, bounds.y);
+    if (FOOTPRINT && !OBLIQUE) pruned = misses_light(view, packet, kappa, node, side, bounds.y);
     return pruned;
 }
 
-uint mask_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
+uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
     agreed = true;
     return occluding(pixel.receiver, cell, depths);
 }
@@ -55,4 +55,4 @@ Progress sum_kernel(Progress from) {
     return progress_of(cursor.walk);
 }
 
-float hidden_share() { return (sum[0] + centre_area(pixel.view, pixel.receiver, 0u)) / pixel.view.area; }
+float hidden_share() { return share_of(sum[0] + centre_area(pixel.view, pixel.receiver, 0u), pixel.view.area); }

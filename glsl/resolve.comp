@@ -4,6 +4,7 @@
 // away from the whole light or lies behind it; NaN where there is no surface.
 #include "pass.glsl"
 #include "receiver.glsl"
+#include "share.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -36,7 +37,7 @@ void main() {
     if (point.exists) {
         result = 0.0;
         if (faces_light(light, point.position, point.normal))
-            result = light.view_count == 0u ? 1.0 : clamp(1.0 - occlusion[index] / light.weight_sum, 0.0, 1.0);
+            result = light.view_count == 0u ? 1.0 : 1.0 - share_of(occlusion[index], light.weight_sum);
     }
     visibility[push.index * frame.size.x * frame.size.y + index] = result;
 }

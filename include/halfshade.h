@@ -174,6 +174,9 @@
 // `mapping`: A packet is one invocation for each pixel; all walk the same stack.
 #define HS_MAPPING_LANES 1
 
+// `mapping`: A subgroup walks for those of its pixels that are alike: its lanes look at different nodes, then each at its pixel.
+#define HS_MAPPING_COOPERATIVE 2
+
 // `hierarchy`: Side by side [DU07]; a third of a node a texel.
 #define HS_HIERARCHY_HSM 0
 
@@ -442,9 +445,9 @@ typedef struct hs_settings {
     const void *next;
     // HS_TECHNIQUE_...
     uint32_t technique;
-    // [pixel] [1, 8] Width of a packet, the pixels that share a traversal.
+    // [pixel] [1, 8] Width of a packet, the pixels that share a traversal; 0 and a height of 0: packets form locally.
     uint32_t packet_width;
-    // [pixel] [1, 8]
+    // [pixel] [1, 8], or 0
     uint32_t packet_height;
     // HS_LEAF_...
     uint32_t leaf;

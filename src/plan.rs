@@ -192,7 +192,7 @@ impl Plan {
             density: settings.hierarchy.density(settings.map),
             map: 0,
             loop_turns: limits.loop_turns,
-            packet: settings.packet,
+            packet: settings.window(),
             textured: false,
             masked: false,
             orthographic: false,

@@ -48,8 +48,12 @@ fn visibility(folder: &Folder, scene: &str, environment: &[(&str, Option<&str>)]
     channels.remove(0).1.data
 }
 
-/// Subgroups only share work: under lavapipe not a bit depends on how many lanes there are. (Other drivers do not heed
-/// the variable, and give the same image twice.)
+/// [visibility] Local packets are those of a subgroup, and sum in another order with another width: some hundred areas in
+/// f32, each with a rounding error of a few 1e-7 of the light.
+const SUMS: f32 = 1e-5;
+
+/// Subgroups share work and sum in an order of their own. (Other drivers do not heed the variable, and give the same image
+/// twice.)
 #[test]
 fn the_width_of_subgroups_does_not_matter() {
     let image = |width: &str| {
@@ -62,11 +66,11 @@ fn the_width_of_subgroups_does_not_matter() {
         ];
         visibility(&Folder::new(), "plate", &environment)
     };
-    let bits = |image: Vec<f32>| image.into_iter().map(f32::to_bits).collect::<Vec<_>>();
-    assert!(
-        bits(image("128")) == bits(image("256")),
-        "4 and 8 lanes differ"
-    );
+    let (four, eight) = (image("128"), image("256"));
+    for (four, eight) in four.into_iter().zip(eight) {
+        let alike = four.to_bits() == eight.to_bits() || (four - eight).abs() <= SUMS;
+        assert!(alike, "{four} with 4 lanes, {eight} with 8");
+    }
 }
 
 /// How far a value is from what the other image has in the pixel and the eight round it. Where a grid of 1/16 pixel

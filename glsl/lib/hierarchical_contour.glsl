@@ -4,48 +4,18 @@
 // pixel_list.glsl and packet_list.glsl include.
 //
 // DEVIATION [Yang09 §4.2]: a large kernel starts from up to 4×4 roots instead of one (`ROOT_LEVELS`).
-// DEVIATION [Yang09 eq. 3]: instead of with a range of depths, samples are compared with bounds of the packet's limits there
-// (`limits_in`), which follow the receivers' planes; see `limit_at`.
 
 #include "quadtree.glsl"
 #include "hierarchy.glsl"
 #include "walk.glsl"
-
-layout(constant_id = 4) const bool FOOTPRINT = true;  // prune nodes that miss the light
+#include "packet_bounds.glsl"
 
 // The pass knows what else rules a node out: whether no edge in the `side` × `side` cells from `node` on, which have these
 // bounds of depth, counts for the packet.
 bool is_pruned(View view, Packet packet, ivec2 node, int side, vec2 bounds);
 
 // The pass knows the corners of a cell that occlude, and whether they do for all of the packet's pixels [Yang09 eq. 3].
-uint mask_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed);
-
-// Bounds of the packet's pixels' limits (`limit_at`) at the samples of a box: a lower one and an upper one.
-vec2 limits_in(Packet packet, vec2 lower, vec2 upper) {
-    vec2 from = lower - packet.origin;
-    vec2 to = upper - packet.origin;
-    vec4 low = vec4(packet.planes.xy * from, packet.planes.xy * to);
-    vec4 high = vec4(packet.planes.zw * from, packet.planes.zw * to);
-    vec4 least = min(low, high);
-    vec4 most = max(low, high);
-    vec2 fall = min(least.xy, least.zw);
-    vec2 rise = max(most.xy, most.zw);
-    // For the rounding of these sums and of those in `limit_at`.
-    vec2 size = max(abs(fall), abs(rise));
-    vec2 depths = abs(packet.plane_depths);
-    float rounding = 1e-6 * (max(depths.x, depths.y) + size.x + size.y);
-    return max(vec2(packet.plane_depths.x + fall.x + fall.y - rounding, packet.plane_depths.y + rise.x + rise.y + rounding),
-               vec2(packet.depth_min, packet.depth_max));
-}
-
-// Whether nothing in the node can project onto the light, for any of the packet's pixels, seen in a map that is parallel to
-// the light (algorithm.md §7): exact, since occluders as near as `depth_max` reach no farther than this. kappa: the scale
-// of back-projection, which such a map's receivers share.
-bool misses_light(View view, Packet packet, vec2 kappa, ivec2 node, int side, float depth_max) {
-    vec2 reach = (depth_max - packet.depth_far) / kappa;
-    return any(greaterThan(vec2(node), packet.centers.zw + reach * view.extent.zw))
-        || any(lessThan(vec2(node + side), packet.centers.xy + reach * view.extent.xy));
-}
+uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed);
 
 // [cell] Where the first root of a walk over the packet's kernel begins.
 ivec2 first_root(Packet packet, int top) { return aligned(unpacked(packet.first), top); }
@@ -69,10 +39,10 @@ bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
     SEARCH_WHILE(!found && !walk.ended) {
         int side = 1 << walk.level;
         vec2 bounds = hierarchy_fetch(view, min(walk.node, last), walk.level);
-        vec2 limits = limits_in(packet, vec2(walk.node), vec2(walk.node + side));
+        vec4 limits = limits_in(packet, vec2(walk.node), vec2(walk.node + side));
         // Nodes stand where the level has them, not where the kernel begins and ends: some hang over.
         bool inside = all(lessThanEqual(walk.node, last)) && all(greaterThan(walk.node + side, first));
-        bool open = inside && bounds.y > limits.x && bounds.x <= limits.y && !is_pruned(view, packet, walk.node, side, bounds);
+        bool open = inside && may_differ(bounds, limits) && !is_pruned(view, packet, walk.node, side, bounds);
         nodes_visited += uint(inside);
         samples_read += uint(inside);
         found = open && walk.level == 0;
@@ -107,7 +77,7 @@ bool next_edge(View view, Packet packet, inout Cursor cursor) {
     if (!cursor.more) found = next_cell(view, packet, cursor.walk, cursor.cell);
     cursor.depths = depths_of(0u, cursor.cell);
     bool agreed;
-    uint mask = mask_in(packet, cursor.cell, cursor.depths, agreed);
+    uint mask = corners_in(packet, cursor.cell, cursor.depths, agreed);
     cursor.mask = found ? mask : 0u;
     cursor.agreed = agreed || !found;
     uint segments = cursor.agreed ? segment_count(cursor.mask) : 0u;

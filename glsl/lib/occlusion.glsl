@@ -1,5 +1,7 @@
 // The image that all views of a light add to, whatever the technique: the weighted share of the light that is occluded.
 
+#include "share.glsl"
+
 BUFFER(occlusion);
 
 // A view's word on a pixel; occluded: its weight times the share of the sub-light that is occluded.

@@ -98,7 +98,7 @@ Progress sum_kernel(View view, Packet packet, Progress from, out bool agreed);
 // What a pixel's sum over all edges says.
 void conclude(View view, uint slot) {
     float hidden = sum[slot] + centre_area(view, receiver_of(slot), 0u);
-    add_occluded(pixel_index[slot], view.weight * clamp(hidden / view.area, 0.0, 1.0));
+    add_occluded(pixel_index[slot], view.weight * share_of(hidden, view.area));
 }
 
 // Whether `lane` is the first of a packet's that has a pixel to integrate, and counts for all.

@@ -116,6 +116,12 @@ float limit_at(Receiver receiver, vec2 texel) {
     return limit;
 }
 
+// The depth of the plane that samples are compared with, at t_p: that of `limit_at`, or of `ceiling_at`.
+float plane_depth_of(Receiver receiver) {
+    precise float ceiling = receiver.d - (receiver.biased - receiver.d);
+    return receiver.behind ? ceiling : receiver.biased;
+}
+
 // Seen from behind the receiver's plane, samples above it occlude up to this depth. What is nearer to the sub-light's
 // centre is below the plane, as is the surface itself, and hides only such parts of the light as are below it as well.
 float ceiling_at(Receiver receiver, vec2 texel) {
@@ -132,16 +138,6 @@ bool occludes(Receiver receiver, vec2 texel, float depth) {
 // The highest limit at samples first … last.
 float highest_limit(Receiver receiver, ivec2 first, ivec2 last) {
     return limit_at(receiver, mix(vec2(first), vec2(last), greaterThan(receiver.plane, vec2(0.0))));
-}
-
-// Whether all samples of a node with these bounds of depth occlude a receiver that is seen from behind its plane, or none.
-bool one_side_of_ceiling(Receiver receiver, ivec2 node, int side, vec2 bounds) {
-    vec2 lower = vec2(node);
-    vec2 upper = vec2(node + side);
-    bvec2 rising = greaterThan(receiver.plane, vec2(0.0));
-    float least = ceiling_at(receiver, mix(upper, lower, rising));
-    float most = ceiling_at(receiver, mix(lower, upper, rising));
-    return bounds.x > most || (bounds.x > receiver.biased && bounds.y <= least);
 }
 
 // Where the line from the receiver through the occluder point (t_p + dt, d) meets the light plane, as

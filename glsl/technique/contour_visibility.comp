@@ -12,4 +12,4 @@ void sum_layer(uint layer, inout Scan scan) { sum_contours(layer, scan); }
 
 Progress sum_kernel(Progress from) { return sum_layers(pixel.first, pixel.last, from); }
 
-float hidden_share() { return (sum[0] + centre_area(pixel.view, pixel.receiver, 0u)) / pixel.view.area; }
+float hidden_share() { return share_of(sum[0] + centre_area(pixel.view, pixel.receiver, 0u), pixel.view.area); }

@@ -23,5 +23,5 @@ float hidden_share() {
     float hidden = sum[0];
     for (uint layer = 0u; layer < (CONTOURS ? LAYERS : 0u); ++layer)
         hidden += centre_area(pixel.view, pixel.receiver, layer);
-    return hidden / pixel.view.area;
+    return share_of(hidden, pixel.view.area);
 }

@@ -44,4 +44,4 @@ Progress sum_kernel(Progress from) {
     return progress_of(walk);
 }
 
-float hidden_share() { return sum[0] / pixel.view.area; }
+float hidden_share() { return share_of(sum[0], pixel.view.area); }

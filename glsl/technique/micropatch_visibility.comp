@@ -14,4 +14,4 @@ void sum_layer(uint layer, inout Scan scan) { sum_patches(layer, scan); }
 // The texels at the corners of the kernel's dual cells.
 Progress sum_kernel(Progress from) { return sum_layers(pixel.first, pixel.last + 1, from); }
 
-float hidden_share() { return sum[0] / pixel.view.area; }
+float hidden_share() { return share_of(sum[0], pixel.view.area); }

@@ -17,9 +17,9 @@ pub struct hs_settings {
     pub next: *const c_void,
     /// HS_TECHNIQUE_...
     pub technique: u32,
-    /// [pixel] [1, 8] Width of a packet, the pixels that share a traversal.
+    /// [pixel] [1, 8] Width of a packet, the pixels that share a traversal; 0 and a height of 0: packets form locally.
     pub packet_width: u32,
-    /// [pixel] [1, 8]
+    /// [pixel] [1, 8], or 0
     pub packet_height: u32,
     /// HS_LEAF_...
     pub leaf: u32,

@@ -12,7 +12,7 @@ use halfshade::Result;
 use halfshade::calibrate::{Measured, Thoroughness, search_costs, winner};
 use halfshade::gpu::Gpu;
 use halfshade::shared::Costs;
-use halfshade::technique::{Leaf, Mapping};
+use halfshade::technique::{Leaf, Mapping, Settings};
 
 use self::bench::Bench;
 use self::table::{rows, written};
@@ -44,7 +44,8 @@ pub struct Args {
 
 /// [pixel] Packet sizes, and how pixels map to invocations: the built-in default, then the likeliest first,
 /// in case time runs out.
-const LAYOUTS: [((u32, u32), Mapping); 12] = [
+const LAYOUTS: [((u32, u32), Mapping); 13] = [
+    (Settings::LOCAL, Mapping::Serial),
     ((4, 4), Mapping::Serial),
     ((4, 4), Mapping::Lanes),
     ((8, 4), Mapping::Serial),

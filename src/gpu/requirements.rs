@@ -200,9 +200,7 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
             missing.push(name.into());
         }
     }
-    if !subgroup_arithmetic(instance, device) {
-        missing.push("subgroup arithmetic in compute shaders".into());
-    }
+    missing.extend(missing_subgroup_operations(instance, device));
     let limits = &properties.limits;
     if limits.max_per_stage_descriptor_storage_buffers < STORAGE_BUFFERS {
         missing.push(format!(
@@ -220,17 +218,28 @@ pub fn missing(instance: &ash::Instance, device: vk::PhysicalDevice) -> Vec<Stri
     missing
 }
 
-fn subgroup_arithmetic(instance: &ash::Instance, device: vk::PhysicalDevice) -> bool {
+/// What compute shaders do with the invocations of a subgroup.
+const SUBGROUP_OPERATIONS: [(vk::SubgroupFeatureFlags, &str); 4] = [
+    (vk::SubgroupFeatureFlags::ARITHMETIC, "arithmetic"),
+    (vk::SubgroupFeatureFlags::VOTE, "vote"),
+    (vk::SubgroupFeatureFlags::BALLOT, "ballot"),
+    (vk::SubgroupFeatureFlags::SHUFFLE, "shuffle"),
+];
+
+fn missing_subgroup_operations(
+    instance: &ash::Instance,
+    device: vk::PhysicalDevice,
+) -> impl Iterator<Item = String> {
     let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
     // SAFETY: the device was enumerated from this instance, and the chain outlives the call.
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
-    subgroups
-        .supported_stages
-        .contains(vk::ShaderStageFlags::COMPUTE)
-        && subgroups
-            .supported_operations
-            .contains(vk::SubgroupFeatureFlags::ARITHMETIC)
+    let there = match (subgroups.supported_stages).contains(vk::ShaderStageFlags::COMPUTE) {
+        true => subgroups.supported_operations,
+        false => vk::SubgroupFeatureFlags::empty(),
+    };
+    let missing = (SUBGROUP_OPERATIONS.into_iter()).filter(move |&(flag, _)| !there.contains(flag));
+    missing.map(|(_, name)| format!("subgroup {name} in compute shaders"))
 }
 
 /// The names of required features that are off.

@@ -4,6 +4,7 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::{LightPlan, Lighting, Plan, ViewSet};
 use crate::frame::Domain;
+use crate::technique::Mapping;
 
 const LEVELS: &str = "hierarchy levels";
 
@@ -118,9 +119,13 @@ impl Plan {
         }
         if set.recipe.has(Domain::PacketList) {
             let (width, height) = self.packet;
+            let local = match set.settings.packet_mapping() {
+                Mapping::Cooperative => "local, in ",
+                Mapping::Serial | Mapping::Lanes => "",
+            };
             writeln!(
                 out,
-                "  packets     {}x{} of {width}x{height} pixels",
+                "  packets     {local}{}x{} of {width}x{height} pixels",
                 self.size.0.div_ceil(width),
                 self.size.1.div_ceil(height)
             )?;

@@ -320,18 +320,27 @@ impl Field for bool {
     }
 }
 
-/// A width and a height.
+/// What `local` stands for where a width and a height are asked for.
+pub const LOCAL: (u32, u32) = (0, 0);
+
+/// A width and a height, or `local`.
 impl Field for (u32, u32) {
     fn text(&self) -> String {
-        format!("{}x{}", self.0, self.1)
+        match *self {
+            LOCAL => "local".into(),
+            (width, height) => format!("{width}x{height}"),
+        }
     }
 
     fn parse(text: &str) -> Result<Self> {
+        if text == "local" {
+            return Ok(LOCAL);
+        }
         let sides = text.split_once(['x', 'X', '×']);
         let sides =
             sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-        sides.ok_or_else(|| {
-            Error::Invalid("a packet is written 4x4, each side from 1 to 8 pixels".into())
+        sides.filter(|&sides| sides != LOCAL).ok_or_else(|| {
+            Error::Invalid("a packet is local, or written 4x4, each side from 1 to 8 pixels".into())
         })
     }
 
@@ -347,9 +356,10 @@ impl Field for (u32, u32) {
     fn check(&self, row: &Row) -> Result<()> {
         match row.allowed {
             Allowed::Within(least, most)
-                if ![self.0, self.1]
-                    .iter()
-                    .all(|side| (least..=most).contains(side)) =>
+                if *self != LOCAL
+                    && ![self.0, self.1]
+                        .iter()
+                        .all(|side| (least..=most).contains(side)) =>
             {
                 row.refuse(&format!("{least}x{least} to {most}x{most}"), self.text())
             }

@@ -18,9 +18,22 @@ const PACKETS: Pass = Pass::dispatch(
     Domain::PacketList,
 );
 
+const COOPERATIVE: Pass = Pass::dispatch(
+    "packet_visibility",
+    "cooperative_visibility.comp",
+    Domain::PacketList,
+);
+
 /// A packet of a single pixel is a pixel: the pixel-wise path.
 fn has_packets(settings: &Settings) -> bool {
     settings.packet != (1, 1)
+}
+
+fn packets(settings: &Settings) -> Pass {
+    match settings.packet_mapping() {
+        Mapping::Serial | Mapping::Lanes => PACKETS,
+        Mapping::Cooperative => COOPERATIVE,
+    }
 }
 
 pub struct PacketContour;
@@ -28,7 +41,7 @@ pub struct PacketContour;
 impl Method for PacketContour {
     fn recipe(&self, settings: &Settings) -> Recipe {
         let passes = match has_packets(settings) {
-            true => once([KERNELS, CLASSIFY, PACKETS, PIXELS]),
+            true => once([KERNELS, CLASSIFY, packets(settings), PIXELS]),
             false => once([KERNELS, CLASSIFY, PIXELS]),
         };
         Recipe {
@@ -42,21 +55,26 @@ impl Method for PacketContour {
 
     fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
         let mut knobs = vec!["split", "packet", "near-points", "no-footprint-pruning"];
-        if has_packets(settings) {
-            knobs.extend(["leaf", "mapping"]);
+        if has_packets(settings) && settings.packet != Settings::LOCAL {
+            knobs.push("mapping");
+        }
+        if has_packets(settings) && settings.packet_mapping() != Mapping::Cooperative {
+            knobs.push("leaf");
         }
         knobs
     }
 
     fn constants(&self, settings: &Settings) -> Vec<(&'static str, u32)> {
-        let (width, height) = settings.packet;
-        let slots = match settings.mapping {
-            Mapping::Lanes => 1,
-            Mapping::Serial => width * height,
+        let (width, height) = settings.window();
+        let (mapping, slots) = match settings.packet_mapping() {
+            Mapping::Serial => (0, width * height),
+            Mapping::Lanes => (1, 1),
+            Mapping::Cooperative => (2, 1),
         };
         vec![
             ("PACKET_WIDTH", width),
             ("PACKET_HEIGHT", height),
+            ("MAPPING", mapping),
             ("SLOTS", slots),
             ("REPROCESS", (settings.leaf == Leaf::Reprocess).into()),
             ("CONTOURS", 1),

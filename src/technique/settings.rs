@@ -24,6 +24,8 @@ choice! {
         Serial = "serial",
         /// A packet is one invocation for each pixel; all walk the same stack.
         Lanes = "lanes",
+        /// A subgroup walks for those of its pixels that are alike: its lanes look at different nodes, then each at its pixel.
+        Cooperative = "cooperative",
     }
 }
 
@@ -178,17 +180,17 @@ settings! {
         .within(1, 16, "the light's split is {}")
         .swept("splits", "NUMBERS", "Values of --split [default: packet-contour 1,2,4, rivals 1]");
 
-    /// [pixel] Width and height of a packet, each 1 to 8; 1×1 is the pixel-wise path.
-    packet: (u32, u32) = (4, 4),
+    /// [pixel] Width and height of a packet, each 1 to 8; 1×1 is the pixel-wise path; [`Settings::LOCAL`].
+    packet: (u32, u32) = Settings::LOCAL,
         Row::value(
             "packet",
-            "WxH",
-            "Pixels that share a traversal, 1x1 to 8x8; 1x1 is the pixel-wise path \
-             [default: calibrated, else 4x4]",
+            "PIXELS",
+            "Pixels that share a traversal: 1x1 to 8x8, where 1x1 is the pixel-wise path, or local: those that are \
+             alike among the pixels of a subgroup, which walks for them together [default: calibrated, else local]",
         )
         .depends()
         .within(1, 8, "a packet is {} pixels")
-        .swept("packets", "WxH", "Values of --packet [default: this device's]");
+        .swept("packets", "PIXELS", "Values of --packet [default: this device's]");
 
     leaf: Leaf = Leaf::PerPixel,
         Row::value(
@@ -203,10 +205,9 @@ settings! {
         Row::value(
             "mapping",
             "MAPPING",
-            "How a packet maps to shader invocations: {} [default: calibrated, else serial]",
+            "How a packet of WxH pixels maps to shader invocations: {} [default: calibrated, else serial]",
         )
-        .depends()
-        .sets("LANES");
+        .depends();
 
     /// [point] [0, 4096] `PacketContour` only: on the whole light, of those that stand for sub-lights that an occluder is
     /// nearer to than they are wide; fewer where side faces multiply their views; 0 = none, they are integrated all the
@@ -489,6 +490,27 @@ impl Settings {
             _ => own.contains(&flag),
         };
         Some(is_read)
+    }
+
+    /// As a size of packets: they form where they are [Yang09 §6], among the pixels that the lanes of a subgroup hold.
+    pub const LOCAL: (u32, u32) = knob::LOCAL;
+    /// [pixel] What local packets form in.
+    const WINDOW: (u32, u32) = (8, 8);
+
+    /// [pixel] Width and height of what is listed as a packet: the packet, or what local ones form in.
+    pub fn window(&self) -> (u32, u32) {
+        match self.packet {
+            Self::LOCAL => Self::WINDOW,
+            packet => packet,
+        }
+    }
+
+    /// How a packet maps to invocations: local ones have no choice.
+    pub fn packet_mapping(&self) -> Mapping {
+        match self.packet {
+            Self::LOCAL => Mapping::Cooperative,
+            _ => self.mapping,
+        }
     }
 
     /// The specialization constants that the technique's shaders take, by name.
