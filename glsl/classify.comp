@@ -101,15 +101,6 @@ void main() {
     if (any(greaterThanEqual(at, grid))) return;
     View view = views[push.index];
     Fit fit = fits[push.index];
-    if (COOPERATIVE && !PIXELWISE) {
-        uint pixel;
-        bool any = false;
-        [[dont_unroll]] for (uint i = 0u; i < PIXELS_PER_PACKET; ++i) any = any || is_penumbra(at, i, pixel);
-        Packet packet;
-        packet.index = at.y * grid.x + at.x;
-        if (any) append_packet(packet);
-        return;
-    }
     PacketStats stats;
     stats.packet = Packet(at.y * grid.x + at.x, 0u, 0u, 1e30, 0.0, 1e30, vec4(1e30, 1e30, -1e30, -1e30), vec2(0.0),
                           vec2(1e30, -1e30), vec4(1e30, 1e30, -1e30, -1e30));

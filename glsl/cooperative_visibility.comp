@@ -33,6 +33,9 @@ BUFFER(pixels);
 #include "surface.glsl"
 #include "packet_grid.glsl"
 #include "list_append.glsl"
+#include "window.glsl"
+
+readonly BUFFER(windows);
 
 // Lanes that have found an edge, and those that have found a cell that the pixels see differently: an entry each, or two
 // where it has two edges.
@@ -138,7 +141,7 @@ void integrate_cells(View view, Found found, uint listed) {
 bool sum_kernel(View view, Packet packet, int level_count, bool takes_part) {
     sum = 0.0;
     SharedWalk walk = shared_walk_over(packet, level_count);
-    REPEAT_WHILE(has_nodes(walk) || walk.found > 0u) {
+    do {
         Found found;
         bool mine = next_cells(view, packet, walk, found.cell);
         found.depths = depths_of(0u, found.cell);
@@ -151,8 +154,9 @@ bool sum_kernel(View view, Packet packet, int level_count, bool takes_part) {
         uint listed = list_cells(found, mine && differs, takes_part);
         integrate_cells(view, found, listed);
         subgroupMemoryBarrierShared();
-    }
-    return walk.size == 0u && walk.found == 0u;
+        settle();
+    } while (!at_end(walk) && budget_lasts());
+    return at_end(walk);
 }
 
 // Hides the lane's pixel as far as the sum says, or leaves it to the pixel list.
@@ -174,17 +178,19 @@ void count_packet(bool takes_part, bool complete) {
 }
 
 // Integrates the pixels that the lanes hold. remains: this lane has one.
-void integrate_pixels(View view, Fit fit, uint index, bool remains) {
+void integrate_pixels(View view, Fit fit, uvec2 pixel, bool remains) {
+    uint index = index_of(pixel);
+    uvec2 cell = pixel / uvec2(PACKET_WIDTH, PACKET_HEIGHT);
     receiver = Receiver(vec2(0.0), 0.0, 0.0, vec2(0.0), false, vec2(1.0), vec2(1.0), vec2(0.0));
     kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
     if (remains) {
-        SurfacePoint point = surface_at(pixel_at(index));
+        SurfacePoint point = surface_at(pixel);
         receiver = project(view, fit, point.position - view.center, point.normal, point.error);
         kernel = kernels[index];
     }
     while (subgroupAny(remains)) {
         bool takes_part = false;
-        if (remains) takes_part = is_like_first(receiver, kernel);
+        if (remains) takes_part = is_like_first(receiver, kernel, cell);
         remains = remains && !takes_part;
         packet_is_behind = subgroupAny(takes_part && receiver.behind);
         Packet packet = packet_of(index, receiver, kernel, takes_part);
@@ -199,18 +205,18 @@ void main() {
     View view = views[push.index];
     Fit fit = fits[push.index];
     kappa = fit.near / (fit.focal * view.half_size);
-    uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint held = subgroupBallotBitCount(subgroupBallot(true));
-    uint parts = (PIXELS_PER_PACKET + held - 1u) / held;
-    for (uint part = gl_SubgroupID; part < packets_per_group() * parts; part += gl_NumSubgroups) {
-        uint entry = group * packets_per_group() + part / parts;
-        if (entry >= lists[push.index].packet_count) break;
-        uint window = packets[entry].index;
-        uvec2 place = uvec2(window % packet_grid().x, window / packet_grid().x);
-        uint number = part % parts * held + lane;
-        uint index = 0u;
-        bool remains = number < PIXELS_PER_PACKET && is_penumbra(place, in_window(min(number, PIXELS_PER_PACKET - 1u)), index);
-        integrate_pixels(view, fit, index, remains);
+    uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
+    uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    uint listed = lists[push.index].packet_count;
+    for (uint entry = group * gl_NumSubgroups + gl_SubgroupID; entry < listed; entry += groups * gl_NumSubgroups) {
+        Window window = windows[entry];
+        uint count = bitCount(window.penumbra.x) + bitCount(window.penumbra.y);
+        for (uint first = 0u; first < count; first += held) {
+            uint rank = min(first + lane, count - 1u);
+            uvec2 pixel = window.place * TILE_SIZE + pixel_in_window(place_of_bit(window.penumbra, rank));
+            integrate_pixels(view, fit, pixel, first + lane < count);
+        }
     }
     if (COUNT) count_work();
 }

@@ -19,6 +19,15 @@ writeonly BUFFER(kernels);
 BUFFER(counters);
 TEXTURE(shadow_map);
 #include "surface.glsl"
+#include "window.glsl"
+#include "rounds.glsl"
+
+writeonly BUFFER(windows);
+BUFFER(lists);
+
+layout(constant_id = 33) const bool WINDOWS = false;  // list what local packets form in
+
+shared uint penumbra[2];
 
 // Queries that shrink a kernel; hardly any pixel takes as many.
 const int ROUNDS_MAX = 8;
@@ -78,21 +87,46 @@ void count(uint status) {
     if (status == KERNEL_PENUMBRA) atomicAdd(counters.penumbra, 1u);
 }
 
-void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size))) return;
-    uint index = index_of(pixel);
-    View view = views[push.index];
-    Fit fit = fits[push.index];
+// The kernel of a pixel of the image.
+Kernel kernel_at(View view, uvec2 pixel) {
     SurfacePoint point = surface_at(pixel);
     vec3 to_point = point.position - view.center;
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (point.exists && in_view(view, to_point, point.normal)) {
-        kernel.status = KERNEL_LIT;
-        if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error));
+    if (!point.exists || !in_view(view, to_point, point.normal)) return kernel;
+    kernel.status = KERNEL_LIT;
+    Fit fit = fits[push.index];
+    if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error));
+    return kernel;
+}
+
+// Lists the window of these pixels if some are to be integrated. A subgroup works off an entry of the list.
+void list_window(bool is_penumbra) {
+    if (gl_LocalInvocationIndex < 2u) penumbra[gl_LocalInvocationIndex] = 0u;
+    barrier();
+    uint place = place_in_window(gl_LocalInvocationID.xy);
+    uint bit = is_penumbra ? 1u << (place & 31u) : 0u;
+    uvec2 bits = subgroupOr(place < 32u ? uvec2(bit, 0u) : uvec2(0u, bit));
+    if (subgroupElect()) atomicOr(penumbra[0], bits.x);
+    if (subgroupElect()) atomicOr(penumbra[1], bits.y);
+    barrier();
+    Window window = Window(gl_WorkGroupID.xy, uvec2(penumbra[0], penumbra[1]));
+    if (gl_LocalInvocationIndex > 0u || (window.penumbra.x | window.penumbra.y) == 0u) return;
+    uint at = atomicAdd(lists[push.index].packet_count, 1u);
+    windows[at] = window;
+    if (at % gl_NumSubgroups == 0u) reach_packets(0u, at / gl_NumSubgroups);
+}
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    uint index = index_of(pixel);
+    View view = views[push.index];
+    Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
+    if (all(lessThan(pixel, frame.size))) {
+        kernel = kernel_at(view, pixel);
+        kernels[index] = kernel;
+        bool umbra = kernel.status == KERNEL_UMBRA;
+        if (!ACCUMULATE || umbra) add_occluded(index, umbra ? view.weight : 0.0);
+        if (COUNT) count(kernel.status);
     }
-    kernels[index] = kernel;
-    bool umbra = kernel.status == KERNEL_UMBRA;
-    if (!ACCUMULATE || umbra) add_occluded(index, umbra ? view.weight : 0.0);
-    if (COUNT) count(kernel.status);
+    if (WINDOWS) list_window(kernel.status == KERNEL_PENUMBRA);
 }

@@ -356,6 +356,14 @@ shared! {
         planes: vec4,
     }
 
+    /// What local packets form in [Yang09 §6]: a tile of the image that has penumbra pixels.
+    struct Window {
+        /// [tile]
+        place: uvec2,
+        /// A bit for each pixel that is penumbra, in Morton order.
+        penumbra: uvec2,
+    }
+
     /// Where a list's entry goes on in the next round.
     struct Progress {
         /// Number of the next cell of a scan; the node of a walk, x | y << 16; or `FINISHED`.

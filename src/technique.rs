@@ -148,6 +148,8 @@ impl Technique {
 pub struct Recipe {
     /// Whether the passes have kernels, and so read the hierarchy over the map.
     pub kernels: bool,
+    /// Whether packets are not on a grid, but form in windows that the kernels list.
+    pub windows: bool,
     /// [layer] Of the shadow map that are peeled off and kept; 0 = the map itself is read.
     pub layers: u32,
     /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.

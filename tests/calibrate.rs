@@ -188,7 +188,7 @@ fn assert_clean(output: &Output) {
 fn example() -> Value {
     let info = default_device();
     json!({
-        "format": 1, "device": info.name, "driver": info.driver, "version": "0.0.0", "measured": [],
+        "format": 2, "device": info.name, "driver": info.driver, "version": "0.0.0", "measured": [],
         "calibration": {"edge_cost": 3.5, "visibility_cost": 0.25, "packet": [2, 3],
             "leaf": "reprocess", "mapping": "lanes"},
     })

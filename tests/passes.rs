@@ -12,7 +12,7 @@ use halfshade::gpu::Gpu;
 use halfshade::render::DEFAULT_COSTS;
 use halfshade::scene::LightShape;
 use halfshade::shared::{
-    KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, Packet, View,
+    KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, Packet, TILE_SIZE, View, Window,
 };
 use halfshade::shot::Shot;
 use halfshade::technique::{Hierarchy as Density, Leaf, Mapping, Settings};
@@ -108,8 +108,7 @@ fn check_kernels(traces: &Traces, receivers: &[Seen], hierarchy: &Hierarchy) -> 
 }
 
 /// Packets by their position in the grid, with their penumbra pixels.
-fn packets_of(shot: &Shot, kernels: &[Kernel]) -> BTreeMap<u32, Vec<u32>> {
-    let (width, height) = shot.settings.window();
+fn packets_of((width, height): (u32, u32), kernels: &[Kernel]) -> BTreeMap<u32, Vec<u32>> {
     let columns = SIZE.div_ceil(width);
     let mut packets = BTreeMap::new();
     for pixel in (0..SIZE * SIZE).filter(|&i| kernels[i as usize].status == KERNEL_PENUMBRA) {
@@ -117,6 +116,15 @@ fn packets_of(shot: &Shot, kernels: &[Kernel]) -> BTreeMap<u32, Vec<u32>> {
         packets.entry(packet).or_insert_with(Vec::new).push(pixel);
     }
     packets
+}
+
+/// [pixel] Where a window's penumbra pixels are, in its tile: a bit's number has the bits of x and y by turns.
+fn places(window: &Window) -> impl Iterator<Item = [u32; 2]> {
+    let [low, high] = window.penumbra.map(u64::from);
+    let bits = low | high << 32;
+    let set = (0..64u32).filter(move |place| bits >> place & 1 != 0);
+    let along = |place: u32| (place & 1) | (place >> 1 & 2) | (place >> 2 & 4);
+    set.map(move |place| [along(place), along(place >> 1)])
 }
 
 /// Whether a packet is the twin's, but for what the device divides: Vulkan allows 2.5 ulp, which its planes consist of.
@@ -141,12 +149,20 @@ fn is_close(found: &Packet, wanted: &Packet) -> bool {
     exact == *wanted && divided.chain(depths).all(close)
 }
 
-/// What local packets form in is listed where it has penumbra pixels, once; each of these comes to one packet, or where the
-/// driver ends its walk to the list of pixels.
+/// What local packets form in is listed where it has penumbra pixels, once, with these; each of them comes to one packet, or
+/// where the driver ends its walk to the list of pixels.
 fn check_windows(traces: &Traces, windows: &BTreeMap<u32, Vec<u32>>) {
-    let mut listed: Vec<u32> = traces.packets.iter().map(|packet| packet.index).collect();
-    listed.sort_unstable();
-    assert!(listed.iter().eq(windows.keys()), "{listed:?}");
+    let columns = SIZE.div_ceil(TILE_SIZE);
+    let mut listed = BTreeMap::new();
+    for window in &traces.windows {
+        let [x, y] = window.place;
+        let pixels =
+            places(window).map(|[dx, dy]| (y * TILE_SIZE + dy) * SIZE + x * TILE_SIZE + dx);
+        let mut pixels: Vec<u32> = pixels.collect();
+        pixels.sort_unstable();
+        assert!(listed.insert(y * columns + x, pixels).is_none());
+    }
+    assert_eq!(&listed, windows);
     let penumbra: BTreeSet<&u32> = windows.values().flatten().collect();
     let mut single = traces.pixels.clone();
     single.sort_unstable();
@@ -168,11 +184,11 @@ fn check_windows(traces: &Traces, windows: &BTreeMap<u32, Vec<u32>>) {
 /// how many.
 fn check_lists(shot: &Shot, traces: &Traces, seen: &[Seen], kernels: &[Kernel]) -> [usize; 2] {
     let pixelwise = shot.settings.packet == (1, 1);
-    let packets = packets_of(shot, kernels);
     if shot.settings.packet_mapping() == Mapping::Cooperative && !pixelwise {
-        check_windows(traces, &packets);
+        check_windows(traces, &packets_of((TILE_SIZE, TILE_SIZE), kernels));
         return [0, 0];
     }
+    let packets = packets_of(shot.settings.window(), kernels);
     let mut coherent: BTreeMap<u32, _> = BTreeMap::new();
     for packet in &traces.packets {
         assert!(

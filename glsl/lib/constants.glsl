@@ -3,7 +3,7 @@
 
 layout(constant_id = 0) const uint PACKET_WIDTH = 1u;     // [pixel]
 layout(constant_id = 1) const uint PACKET_HEIGHT = 1u;    // [pixel]
-layout(constant_id = 3) const uint MAPPING = 0u;          // how a packet maps to invocations, see below
+layout(constant_id = 3) const bool LANES = false;         // a packet's pixels have an invocation each
 layout(constant_id = 5) const bool DISC_LIGHT = false;    // the sub-light is a disc or cut by one
 layout(constant_id = 6) const bool OBLIQUE = false;       // the map is not parallel to the light
 layout(constant_id = 7) const bool COUNT = false;         // write `counters`
@@ -13,8 +13,3 @@ layout(constant_id = 11) const uint LOOP_BUDGET = 60000u; // [turn] of loops tha
 layout(constant_id = 12) const uint ROUNDS = 1u;          // [dispatch] in which a list is worked off
 layout(constant_id = 13) const uint LAYERS = 1u;          // peeled layers of the shadow map
 layout(constant_id = 16) const bool CONTOURS = false;     // occluders are contours, not micropatches
-
-// A packet's pixels have an invocation each, and each walks for itself.
-const bool LANES = MAPPING == 1u;
-// A subgroup walks for them together.
-const bool COOPERATIVE = MAPPING == 2u;

@@ -7,8 +7,8 @@
 #include "quadtree.glsl"
 #include "hierarchy.glsl"
 
-// [node] A step opens four nodes for each that it takes, three more than it frees: so many hold a walk of twelve levels.
-const uint STACK_PER_LANE = 12u;
+// [node] Enough for a walk of twelve levels, of which each leaves three nodes for later, for any width from four on.
+const uint STACK_PER_LANE = 16u;
 // [cell] Twice what is wanted, less one.
 const uint CELLS_PER_LANE = 2u;
 
@@ -42,37 +42,51 @@ int level_of(uint node) { return int(node >> 26); }
 struct SharedWalk {
     ivec2 first;
     ivec2 last;
+    // Squares of four roots, which need not be nodes: where the first stands, how many there are, and those that are begun.
+    ivec2 origin;
+    uvec2 count;
+    uint begun;
+    // [level] Of these squares.
+    int top;
     // [node] On the stack; their children are looked at next.
     uint size;
     // [cell] Found, and not yet seen to.
     uint found;
-    // The stack holds all that is open.
-    bool fits;
 };
 
-bool has_nodes(SharedWalk walk) { return walk.size > 0u && walk.fits; }
+bool has_nodes(SharedWalk walk) { return walk.size > 0u || walk.begun < walk.count.x * walk.count.y; }
+
+bool at_end(SharedWalk walk) { return !has_nodes(walk) && walk.found == 0u; }
 
 // Over a packet's kernel, from nodes of the lowest level that is as large, as far as levels are built.
 SharedWalk shared_walk_over(Packet packet, int level_count) {
-    SharedWalk walk = SharedWalk(unpacked(packet.first), unpacked(packet.last), 0u, 0u, true);
-    ivec2 side = walk.last - walk.first + 1;
-    int top = min(level_covering(max(side.x, side.y)), level_count - 1);
-    ivec2 root = aligned(walk.first, top);
-    // Squares of four roots, which need not be nodes.
-    uvec2 count = uvec2((walk.last - root) >> (top + 1)) + 1u;
-    walk.size = count.x * count.y;
-    walk.fits = walk.size <= STACK_PER_LANE * lanes;
-    for (uint i = lane; i < walk.size && walk.fits; i += lanes)
-        stack[STACK_PER_LANE * share_first + i] = packed_node(root + (ivec2(i % count.x, i / count.x) << (top + 1)), top + 1);
+    ivec2 first = unpacked(packet.first);
+    ivec2 last = unpacked(packet.last);
+    ivec2 side = last - first + 1;
+    int level = min(level_covering(max(side.x, side.y)), level_count - 1);
+    ivec2 origin = aligned(first, level);
+    uvec2 count = uvec2((last - origin) >> (level + 1)) + 1u;
+    return SharedWalk(first, last, origin, count, 0u, level + 1, 0u, 0u);
+}
+
+// Puts the next squares of roots on the empty stack, one for each lane at most.
+void begin_roots(inout SharedWalk walk) {
+    uint added = min(walk.count.x * walk.count.y - walk.begun, lanes);
+    uint root = walk.begun + lane;
+    ivec2 place = ivec2(root % walk.count.x, root / walk.count.x) << walk.top;
+    if (lane < added) stack[STACK_PER_LANE * share_first + lane] = packed_node(walk.origin + place, walk.top);
+    walk.begun += added;
+    walk.size = added;
     subgroupMemoryBarrierShared();
-    return walk;
 }
 
 // Takes nodes from the stack and looks at their children, a lane at each.
 void step_down(View view, Packet packet, inout SharedWalk walk) {
+    if (walk.size == 0u) begin_roots(walk);
+    // No more than leave room for what the deepest walk below them leaves for later.
     uint room = STACK_PER_LANE * lanes - walk.size;
-    uint taken = min(min(walk.size, lanes / 4u), room / 3u);
-    walk.fits = taken > 0u;
+    uint deepest = uint(walk.top);
+    uint taken = min(min(walk.size, lanes / 4u), max(room / (3u * deepest), 1u));
     walk.size -= taken;
     bool open = lane < 4u * taken;
     uint parent = stack[STACK_PER_LANE * share_first + walk.size + (open ? lane / 4u : 0u)];
@@ -96,9 +110,12 @@ void step_down(View view, Packet packet, inout SharedWalk walk) {
     subgroupMemoryBarrierShared();
 }
 
-// Walks until there is a cell for each lane, or no node left. Gives each lane one of them; false: there is none for it.
+// Walks at least a step, and until there is a cell for each lane, or no node left. Gives each lane one of them; false: there is none for it.
 bool next_cells(View view, Packet packet, inout SharedWalk walk, out ivec2 cell) {
-    SEARCH_WHILE(has_nodes(walk) && walk.found < lanes) { step_down(view, packet, walk); }
+    do {
+        step_down(view, packet, walk);
+        ++unpaid_turns;
+    } while (has_nodes(walk) && walk.found < lanes && budget_lasts());
     uint taken = min(walk.found, lanes);
     walk.found -= taken;
     bool mine = lane < taken;

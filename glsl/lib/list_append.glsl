@@ -7,7 +7,7 @@ BUFFER(lists);
 const bool PIXELWISE = PIXELS_PER_PACKET == 1u;
 
 // [packet] Packets that a work group works off.
-uint packets_per_group() { return MAPPING != 0u && !PIXELWISE ? GROUP_SIZE / PIXELS_PER_PACKET : GROUP_SIZE; }
+uint packets_per_group() { return LANES && !PIXELWISE ? GROUP_SIZE / PIXELS_PER_PACKET : GROUP_SIZE; }
 
 // The first entry of a group makes the dispatch reach all of it.
 void append_packet(Packet packet) {

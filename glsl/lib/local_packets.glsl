@@ -9,13 +9,18 @@ float width_of(ivec2 first, ivec2 last) {
     return float(max(side.x, side.y));
 }
 
-// [node] Of a walk over a kernel so wide [Yang09 eq. 6].
-float walk_cost(float width) { return (log2(max(width, 2.0)) + EDGE_COST) * width; }
+// [node] What a packet costs, whatever its kernel.
+const float PACKET_COST = 64.0;
+
+// [node] Of a packet with a kernel so wide [Yang09 eq. 6].
+float walk_cost(float width) { return PACKET_COST + (log2(max(width, 2.0)) + EDGE_COST) * width; }
 
 // Whether this lane's pixel had better walk with that of the first active lane than by itself. What pixels that are walked for
 // together cost more is the wider kernel, and the cells about which they may differ: a share of it as large as that of the
-// depths between their planes [Yang09 eq. 4]. Right or wrong, the image is the same.
-bool is_like_first(Receiver receiver, Kernel kernel) {
+// depths between their planes [Yang09 eq. 4]. Right or wrong, the image is the same. cell: of packets of a fixed size; those of
+// another do not walk together.
+bool is_like_first(Receiver receiver, Kernel kernel, uvec2 cell) {
+    if (any(notEqual(subgroupBroadcastFirst(cell), cell))) return false;
     if (subgroupBroadcastFirst(uint(receiver.behind)) != uint(receiver.behind)) return false;
     ivec2 own_first = unpacked(kernel.first);
     ivec2 own_last = unpacked(kernel.last);

@@ -14,11 +14,3 @@ bool is_penumbra(uvec2 place, uint i, out uint index) {
     index = pixel.y * frame.size.x + pixel.x;
     return all(lessThan(pixel, frame.size)) && kernels[index].status == KERNEL_PENUMBRA;
 }
-
-// The order in which pixels of a packet go to the lanes of a subgroup: in packets of 8×8 those of any 4, 8, 16 or 32 lanes are near
-// to one another (Morton).
-uint in_window(uint i) {
-    uint x = i & 1u | i >> 1 & 2u | i >> 2 & 4u;
-    uint y = i >> 1 & 1u | i >> 2 & 2u | i >> 3 & 4u;
-    return PACKET_WIDTH == 8u && PACKET_HEIGHT == 8u ? y * 8u + x : i;
-}

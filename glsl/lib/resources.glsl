@@ -62,6 +62,7 @@
 
 // From kernels to visibility.
 #define RESOURCE_kernels ARRAY(30, Kernel, kernels)
+#define RESOURCE_windows ARRAY(56, Window, windows)
 #define RESOURCE_costs STRUCT(31, Costs, costs)
 #define RESOURCE_packets ARRAY(32, Packet, packets)
 #define RESOURCE_pixels ARRAY(33, uint, pixels)

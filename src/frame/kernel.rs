@@ -3,7 +3,7 @@
 
 use super::pass::{Domain, Pass, Work};
 use super::resource::{Resource, Shape, Sizes};
-use crate::shared::{Kernel, Lists, Packet, Progress, Round};
+use crate::shared::{Kernel, Lists, Packet, Progress, Round, Window};
 
 const CLEAR_LISTS: Pass = Pass::new("clear_lists", Work::Clear(&["lists", "rounds"]));
 
@@ -21,6 +21,9 @@ pub fn first_passes(has_lists: bool) -> impl Iterator<Item = Pass> {
 pub const RESOURCES: &[Resource] = &[
     Resource::new("kernels", |s| {
         Shape::array::<Kernel>(s.pixels()).when(s.kernels)
+    }),
+    Resource::new("windows", |s| {
+        Shape::array::<Window>(s.tiles()).when(s.windows)
     }),
     Resource::new("packets", |s| {
         Shape::array::<Packet>(s.packets()).when(s.packet_lists)

@@ -3,6 +3,7 @@
 use super::{Casters, Density, Front};
 use crate::gpu::ImageKind;
 use crate::scene::Scene;
+use crate::shared::TILE_SIZE;
 
 /// A resource as its producer declares it.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +59,8 @@ pub struct Sizes {
     pub layers: u32,
     /// Whether there are kernels, and lists of packets and of pixels.
     pub kernels: bool,
+    /// Local packets form in windows.
+    pub windows: bool,
     pub packet_lists: bool,
     pub pixel_lists: bool,
     /// [pixel] Width and height of a packet.
@@ -148,6 +151,12 @@ impl Sizes {
         u64::from(self.image.0) * u64::from(self.image.1)
     }
 
+    /// [tile] Of the image.
+    pub fn tiles(&self) -> u64 {
+        let along = |pixels: u32| u64::from(pixels.div_ceil(TILE_SIZE));
+        along(self.image.0) * along(self.image.1)
+    }
+
     /// [packet] Of the image.
     pub fn packets(&self) -> u64 {
         let along = |pixels: u32, packet: u32| u64::from(pixels.div_ceil(packet));
@@ -165,7 +174,7 @@ impl Sizes {
 
     /// The lists of packets and of pixels, a pair for each view.
     pub fn lists(&self) -> u64 {
-        match self.packet_lists || self.pixel_lists {
+        match self.packet_lists || self.windows || self.pixel_lists {
             true => self.views.into(),
             false => 0,
         }

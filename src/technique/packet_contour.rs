@@ -24,41 +24,38 @@ const COOPERATIVE: Pass = Pass::dispatch(
     Domain::PacketList,
 );
 
-/// A packet of a single pixel is a pixel: the pixel-wise path.
-fn has_packets(settings: &Settings) -> bool {
-    settings.packet != (1, 1)
-}
-
-fn packets(settings: &Settings) -> Pass {
-    match settings.packet_mapping() {
-        Mapping::Serial | Mapping::Lanes => PACKETS,
-        Mapping::Cooperative => COOPERATIVE,
-    }
+/// How packets map to invocations. None: a packet of a single pixel is a pixel, the pixel-wise path.
+fn mapping(settings: &Settings) -> Option<Mapping> {
+    (settings.packet != (1, 1)).then(|| settings.packet_mapping())
 }
 
 pub struct PacketContour;
 
 impl Method for PacketContour {
     fn recipe(&self, settings: &Settings) -> Recipe {
-        let passes = match has_packets(settings) {
-            true => once([KERNELS, CLASSIFY, packets(settings), PIXELS]),
-            false => once([KERNELS, CLASSIFY, PIXELS]),
+        let mapping = mapping(settings);
+        let passes = match mapping {
+            None => once([KERNELS, CLASSIFY, PIXELS]),
+            Some(Mapping::Serial | Mapping::Lanes) => once([KERNELS, CLASSIFY, PACKETS, PIXELS]),
+            Some(Mapping::Cooperative) => once([KERNELS, COOPERATIVE, PIXELS]),
         };
         Recipe {
             kernels: true,
             words: 1,
             turns: TURNS_OF_WALKS,
             passes,
+            windows: mapping == Some(Mapping::Cooperative),
             ..Recipe::default()
         }
     }
 
     fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
         let mut knobs = vec!["split", "packet", "near-points", "no-footprint-pruning"];
-        if has_packets(settings) && settings.packet != Settings::LOCAL {
+        let mapping = mapping(settings);
+        if mapping.is_some() && settings.packet != Settings::LOCAL {
             knobs.push("mapping");
         }
-        if has_packets(settings) && settings.packet_mapping() != Mapping::Cooperative {
+        if matches!(mapping, Some(Mapping::Serial | Mapping::Lanes)) {
             knobs.push("leaf");
         }
         knobs
@@ -66,15 +63,16 @@ impl Method for PacketContour {
 
     fn constants(&self, settings: &Settings) -> Vec<(&'static str, u32)> {
         let (width, height) = settings.window();
-        let (mapping, slots) = match settings.packet_mapping() {
-            Mapping::Serial => (0, width * height),
-            Mapping::Lanes => (1, 1),
-            Mapping::Cooperative => (2, 1),
+        let mapping = mapping(settings);
+        let slots = match mapping {
+            Some(Mapping::Serial) => width * height,
+            _ => 1,
         };
         vec![
             ("PACKET_WIDTH", width),
             ("PACKET_HEIGHT", height),
-            ("MAPPING", mapping),
+            ("LANES", (mapping == Some(Mapping::Lanes)).into()),
+            ("WINDOWS", (mapping == Some(Mapping::Cooperative)).into()),
             ("SLOTS", slots),
             ("REPROCESS", (settings.leaf == Leaf::Reprocess).into()),
             ("CONTOURS", 1),

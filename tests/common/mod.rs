@@ -7,7 +7,7 @@ use glam::Vec3;
 use halfshade::gpu::{Gpu, Options};
 use halfshade::plan::{Outputs, ViewPlan};
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
-use halfshade::shared::{Counters, Fit, Kernel, Lists, Packet};
+use halfshade::shared::{Counters, Fit, Kernel, Lists, Packet, Window};
 use halfshade::shot::{Overrides, Shot};
 
 /// [pixel] Width and height of every image.
@@ -87,7 +87,9 @@ pub struct Traces {
     /// The image that holds all levels, row by row.
     pub hierarchy: Vec<[f32; 2]>,
     pub kernels: Vec<Kernel>,
+    /// Those of a grid of packets, or what local ones form in.
     pub packets: Vec<Packet>,
+    pub windows: Vec<Window>,
     pub pixels: Vec<u32>,
     pub occlusion: Vec<f32>,
     /// Before and after it.
@@ -106,6 +108,7 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
         .read_buffer("lists", plan.views().count())
         .expect("lists");
     let lists = lists[view as usize];
+    let local = plan.memory().any(|(name, _)| name == "windows");
     Traces {
         planned: planned.clone(),
         fit: renderer.fits().expect("fits")[view as usize],
@@ -114,7 +117,16 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
             .expect("shadow_map"),
         hierarchy: bounds(renderer),
         kernels: renderer.read_buffer("kernels", pixels).expect("kernels"),
-        packets: listed(renderer, "packets", lists.packet_count),
+        packets: if local {
+            Vec::new()
+        } else {
+            listed(renderer, "packets", lists.packet_count)
+        },
+        windows: if local {
+            listed(renderer, "windows", lists.packet_count)
+        } else {
+            Vec::new()
+        },
         pixels: listed(renderer, "pixels", lists.pixel_count),
         occlusion: renderer
             .read_buffer("occlusion", pixels)
