@@ -168,6 +168,10 @@ impl Plan {
             let light = draft.finish(index, self.levels, &mut numbering);
             self.lights.push(light);
         }
+        if self.loop_turns == Limits::ENDLESS_LOOPS {
+            let sets = self.lights.iter_mut().flat_map(|light| &mut light.sets);
+            sets.for_each(|set| set.recipe.passes.retain(|(pass, _)| !pass.leftovers));
+        }
         self.graph = self.ordered();
         Ok(())
     }

@@ -141,6 +141,22 @@ fn settings_change_what_runs() {
     check("plate-packet-1x1", &pixels, EVERYTHING, false);
 }
 
+/// Local packets leave nothing over where a driver lets loops run.
+#[test]
+fn what_drivers_leave_over_is_planned_for_such_drivers_alone() {
+    let shot = scene("plate");
+    let endless = Limits {
+        loop_turns: Limits::ENDLESS_LOOPS,
+        ..LIMITS
+    };
+    let passes = |limits: &Limits| -> Vec<&'static str> {
+        let plan = plan(&shot, EVERYTHING, limits).expect("a plan");
+        plan.passes().into_iter().map(|(name, _)| name).collect()
+    };
+    let pixels = |limits| passes(limits).contains(&"pixel_visibility");
+    assert!(pixels(&LIMITS) && !pixels(&endless));
+}
+
 #[test]
 fn every_technique_at_its_usual_settings() {
     for &technique in Technique::ALL {

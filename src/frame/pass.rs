@@ -12,6 +12,8 @@ pub struct Pass {
     pub constants: &'static [(&'static str, u32)],
     /// What it makes is there in the next frame: one that keeps the shadow map leaves the pass out.
     pub lasts: bool,
+    /// It takes up what a driver that ends loops leaves over, and runs nowhere else.
+    pub leftovers: bool,
     /// What a host lends it, beside the resources of the frame.
     pub lent: Lent,
 }
@@ -133,6 +135,7 @@ impl Pass {
             work,
             constants: &[],
             lasts: false,
+            leftovers: false,
             lent: Lent::Nothing,
         }
     }
@@ -173,6 +176,14 @@ impl Pass {
     pub const fn lasting(self) -> Self {
         Self {
             lasts: true,
+            ..self
+        }
+    }
+
+    /// One for what a driver that ends loops leaves over.
+    pub const fn of_leftovers(self) -> Self {
+        Self {
+            leftovers: true,
             ..self
         }
     }

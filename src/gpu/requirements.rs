@@ -28,6 +28,11 @@ pub struct Limits {
     pub loop_turns: u32,
 }
 
+impl Limits {
+    /// [turn] Where a driver leaves loops alone.
+    pub const ENDLESS_LOOPS: u32 = u32::MAX;
+}
+
 /// [turn] lavapipe allows 65535 in sum over all loops and over the lanes of a vector, which wait for one another; the
 /// passes count only those of their large loops. Where the pixels of packets disagree in most cells, up to twice as many
 /// turns are taken as are counted: 60000 lost edges there, 30000 loses none.
@@ -166,7 +171,7 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
         adds_floats: adds_floats(instance, device),
         loop_turns: match driver {
             vk::DriverId::MESA_LLVMPIPE => LAVAPIPE_LOOP_TURNS,
-            _ => u32::MAX,
+            _ => Limits::ENDLESS_LOOPS,
         },
     }
 }

@@ -112,6 +112,12 @@ impl Plan {
                 "a packet is a single pixel",
             );
         }
+        if recipe.windows && !recipe.has(Domain::PixelList) {
+            self.omit(
+                format!("{name}: pixel_visibility"),
+                "the driver ends no walk of a packet",
+            );
+        }
         let asked = shot.settings.hierarchy;
         if recipe.kernels && self.hierarchy(&shot.settings) != asked {
             self.omit(

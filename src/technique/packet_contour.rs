@@ -37,7 +37,7 @@ impl Method for PacketContour {
         let passes = match mapping {
             None => once([KERNELS, CLASSIFY, PIXELS]),
             Some(Mapping::Serial | Mapping::Lanes) => once([KERNELS, CLASSIFY, PACKETS, PIXELS]),
-            Some(Mapping::Cooperative) => once([KERNELS, COOPERATIVE, PIXELS]),
+            Some(Mapping::Cooperative) => once([KERNELS, COOPERATIVE, PIXELS.of_leftovers()]),
         };
         Recipe {
             kernels: true,

@@ -127,6 +127,7 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
         } else {
             Vec::new()
         },
+        // On drivers that end loops local packets leave some over.
         pixels: listed(renderer, "pixels", lists.pixel_count),
         occlusion: renderer
             .read_buffer("occlusion", pixels)
