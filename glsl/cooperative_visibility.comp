@@ -86,7 +86,7 @@ void integrate_edges(View view, Found found, bool wanted) {
     uint count = subgroupBallotBitCount(ballot);
     Edge edge = edge_of(found.cell, found.depths, found.mask, 0u);
     if (wanted) edge_lanes[share_first + subgroupBallotExclusiveBitCount(ballot)] = gl_SubgroupInvocationID;
-    subgroupMemoryBarrierShared();
+    subgroupBarrier();
     if (count > 0u) {
         uint i = 0u;
         [[dont_unroll]] do {
@@ -104,13 +104,15 @@ uint list_cells(Found found, bool wanted, bool takes_part) {
     uvec4 ballot = subgroupBallot(wanted);
     uint count = subgroupBallotBitCount(ballot);
     if (wanted) edge_lanes[share_first + subgroupBallotExclusiveBitCount(ballot)] = gl_SubgroupInvocationID;
-    subgroupMemoryBarrierShared();
+    subgroupBarrier();
     uint listed = 0u;
     if (count > 0u) {
         uint i = 0u;
         [[dont_unroll]] do {
             uint from = edge_lanes[share_first + i];
-            uint segments = takes_part ? segment_count(corners_of(found_by(from, found))) : 0u;
+            // By all lanes: one that does not take part may have found the cell.
+            uint mask = corners_of(found_by(from, found));
+            uint segments = takes_part ? segment_count(mask) : 0u;
             bool one = subgroupAny(segments > 0u);
             bool two = subgroupAny(segments > 1u);
             if (one) cell_lanes[2u * share_first + listed] = from;
@@ -119,7 +121,7 @@ uint list_cells(Found found, bool wanted, bool takes_part) {
         } while (++i < count);
     }
     spend_nested(count, 1u);
-    subgroupMemoryBarrierShared();
+    subgroupBarrier();
     return listed;
 }
 
@@ -150,10 +152,10 @@ bool sum_kernel(View view, Packet packet, int level_count, bool takes_part) {
         bool single = found.agreed && segment_count(found.mask) == 1u;
         bool differs = !found.agreed || segment_count(found.mask) > 1u;
         integrate_edges(view, found, mine && single);
-        subgroupMemoryBarrierShared();
+        subgroupBarrier();
         uint listed = list_cells(found, mine && differs, takes_part);
         integrate_cells(view, found, listed);
-        subgroupMemoryBarrierShared();
+        subgroupBarrier();
         settle();
     } while (!at_end(walk) && budget_lasts());
     return at_end(walk);
@@ -177,7 +179,7 @@ void count_packet(bool takes_part, bool complete) {
     if (!complete) atomicAdd(counters.reprocessed_packets, 1u);
 }
 
-// Integrates the pixels that the lanes hold. remains: this lane has one.
+// Integrates the pixels that the lanes hold. remains: this lane has one; some lane does.
 void integrate_pixels(View view, Fit fit, uvec2 pixel, bool remains) {
     uint index = index_of(pixel);
     uvec2 cell = pixel / uvec2(PACKET_WIDTH, PACKET_HEIGHT);
@@ -188,7 +190,7 @@ void integrate_pixels(View view, Fit fit, uvec2 pixel, bool remains) {
         receiver = project(view, fit, point.position - view.center, point.normal, point.error);
         kernel = kernels[index];
     }
-    while (subgroupAny(remains)) {
+    do {
         bool takes_part = false;
         if (remains) takes_part = is_like_first(receiver, kernel, cell);
         remains = remains && !takes_part;
@@ -197,7 +199,7 @@ void integrate_pixels(View view, Fit fit, uvec2 pixel, bool remains) {
         bool complete = sum_kernel(view, packet, int(fit.level_count), takes_part);
         if (takes_part) conclude(view, index, complete);
         if (COUNT) count_packet(takes_part, complete);
-    }
+    } while (subgroupAny(remains));
 }
 
 void main() {
@@ -209,14 +211,19 @@ void main() {
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
     uint listed = lists[push.index].packet_count;
-    for (uint entry = group * gl_NumSubgroups + gl_SubgroupID; entry < listed; entry += groups * gl_NumSubgroups) {
+    uint entry = group * gl_NumSubgroups + gl_SubgroupID;
+    if (entry >= listed) return;
+    do {
         Window window = windows[entry];
         uint count = bitCount(window.penumbra.x) + bitCount(window.penumbra.y);
-        for (uint first = 0u; first < count; first += held) {
+        uint first = 0u;
+        do {
             uint rank = min(first + lane, count - 1u);
             uvec2 pixel = window.place * TILE_SIZE + pixel_in_window(place_of_bit(window.penumbra, rank));
             integrate_pixels(view, fit, pixel, first + lane < count);
-        }
-    }
+            first += held;
+        } while (first < count);
+        entry += groups * gl_NumSubgroups;
+    } while (entry < listed);
     if (COUNT) count_work();
 }

@@ -99,7 +99,14 @@ Kernel kernel_at(View view, uvec2 pixel) {
     return kernel;
 }
 
-// Lists the window of these pixels if some are to be integrated. A subgroup works off an entry of the list.
+// Lists pixels of a window, for a subgroup to work off.
+void append_window(Window window) {
+    uint at = atomicAdd(lists[push.index].packet_count, 1u);
+    windows[at] = window;
+    if (at % gl_NumSubgroups == 0u) reach_packets(0u, at / gl_NumSubgroups);
+}
+
+// Lists those of these pixels that are to be integrated, as many to an entry as a subgroup has lanes.
 void list_window(bool is_penumbra) {
     if (gl_LocalInvocationIndex < 2u) penumbra[gl_LocalInvocationIndex] = 0u;
     barrier();
@@ -109,11 +116,13 @@ void list_window(bool is_penumbra) {
     if (subgroupElect()) atomicOr(penumbra[0], bits.x);
     if (subgroupElect()) atomicOr(penumbra[1], bits.y);
     barrier();
-    Window window = Window(gl_WorkGroupID.xy, uvec2(penumbra[0], penumbra[1]));
-    if (gl_LocalInvocationIndex > 0u || (window.penumbra.x | window.penumbra.y) == 0u) return;
-    uint at = atomicAdd(lists[push.index].packet_count, 1u);
-    windows[at] = window;
-    if (at % gl_NumSubgroups == 0u) reach_packets(0u, at / gl_NumSubgroups);
+    if (gl_LocalInvocationIndex > 0u) return;
+    uvec2 left = uvec2(penumbra[0], penumbra[1]);
+    while ((left.x | left.y) != 0u) {
+        uvec2 some = first_bits(left, max(gl_SubgroupSize, WINDOW_PIXELS_MIN));
+        append_window(Window(gl_WorkGroupID.xy, some));
+        left &= ~some;
+    }
 }
 
 void main() {

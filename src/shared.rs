@@ -108,6 +108,8 @@ shared_constants! {
     GROUPS_PER_ROW: uint = 32768;
     /// `Progress::next` of an entry that is finished.
     FINISHED: uint = 0x7fffffff;
+    /// [pixel] Of a window, at least, however few lanes a subgroup has.
+    WINDOW_PIXELS_MIN: uint = 4;
     /// [pixel] Side of the work group of passes over images and over the hierarchy.
     TILE_SIZE: uint = 8;
     /// tan 60°: the front face of a sub-light holds the receivers that lie within it of the axis in
@@ -356,11 +358,12 @@ shared! {
         planes: vec4,
     }
 
-    /// What local packets form in [Yang09 §6]: a tile of the image that has penumbra pixels.
+    /// What local packets form in [Yang09 §6]: penumbra pixels of a tile of the image, as many as a subgroup has lanes, or
+    /// what is left of them.
     struct Window {
         /// [tile]
         place: uvec2,
-        /// A bit for each pixel that is penumbra, in Morton order.
+        /// A bit for each of them, in Morton order.
         penumbra: uvec2,
     }
 

@@ -127,30 +127,26 @@ fn places(window: &Window) -> impl Iterator<Item = [u32; 2]> {
     set.map(move |place| [along(place), along(place >> 1)])
 }
 
-/// Whether a packet is the twin's, but for what the device divides: Vulkan allows 2.5 ulp, which its planes consist of.
+/// Whether a packet is the twin's, but for what the device divides: Vulkan allows 2.5 ulp.
 fn is_close(found: &Packet, wanted: &Packet) -> bool {
     let divided = |packet: &Packet| {
-        let ([near, far], planes) = (packet.plane_depths, packet.planes);
-        [near, far].into_iter().chain(planes).collect::<Vec<f32>>()
+        let depths = [packet.depth_min, packet.depth_max, packet.depth_far];
+        let texels = packet.centers.into_iter().chain(packet.origin);
+        let planes = packet.plane_depths.into_iter().chain(packet.planes);
+        depths
+            .into_iter()
+            .chain(texels)
+            .chain(planes)
+            .collect::<Vec<f32>>()
     };
     let close = |(a, b): (f32, f32)| (a - b).abs() <= 1e-6 * a.abs().max(b.abs());
-    let exact = Packet {
-        plane_depths: wanted.plane_depths,
-        planes: wanted.planes,
-        depth_min: wanted.depth_min,
-        depth_max: wanted.depth_max,
-        ..*found
-    };
-    let depths = [
-        (found.depth_min, wanted.depth_min),
-        (found.depth_max, wanted.depth_max),
-    ];
-    let divided = divided(found).into_iter().zip(divided(wanted));
-    exact == *wanted && divided.chain(depths).all(close)
+    let listed = |packet: &Packet| [packet.index, packet.first, packet.last];
+    let mut pairs = divided(found).into_iter().zip(divided(wanted));
+    listed(found) == listed(wanted) && pairs.all(close)
 }
 
-/// What local packets form in is listed where it has penumbra pixels, once, with these; each of them comes to one packet, or
-/// where the driver ends its walk to the list of pixels.
+/// What local packets form in is listed: each tile's penumbra pixels once. Each of them comes to one packet, or where the driver
+/// ends its walk to the list of pixels.
 fn check_windows(traces: &Traces, windows: &BTreeMap<u32, Vec<u32>>) {
     let columns = SIZE.div_ceil(TILE_SIZE);
     let mut listed = BTreeMap::new();
@@ -158,10 +154,12 @@ fn check_windows(traces: &Traces, windows: &BTreeMap<u32, Vec<u32>>) {
         let [x, y] = window.place;
         let pixels =
             places(window).map(|[dx, dy]| (y * TILE_SIZE + dy) * SIZE + x * TILE_SIZE + dx);
-        let mut pixels: Vec<u32> = pixels.collect();
-        pixels.sort_unstable();
-        assert!(listed.insert(y * columns + x, pixels).is_none());
+        let tile: &mut Vec<u32> = listed.entry(y * columns + x).or_default();
+        tile.extend(pixels);
     }
+    listed
+        .values_mut()
+        .for_each(|pixels| pixels.sort_unstable());
     assert_eq!(&listed, windows);
     let penumbra: BTreeSet<&u32> = windows.values().flatten().collect();
     let mut single = traces.pixels.clone();

@@ -77,7 +77,7 @@ void begin_roots(inout SharedWalk walk) {
     if (lane < added) stack[STACK_PER_LANE * share_first + lane] = packed_node(walk.origin + place, walk.top);
     walk.begun += added;
     walk.size = added;
-    subgroupMemoryBarrierShared();
+    subgroupBarrier();
 }
 
 // Takes nodes from the stack and looks at their children, a lane at each.
@@ -90,6 +90,7 @@ void step_down(View view, Packet packet, inout SharedWalk walk) {
     walk.size -= taken;
     bool open = lane < 4u * taken;
     uint parent = stack[STACK_PER_LANE * share_first + walk.size + (open ? lane / 4u : 0u)];
+    subgroupBarrier();
     int level = level_of(parent) - 1;
     int side = 1 << level;
     ivec2 node = cell_of(parent) + ivec2(lane & 1u, lane >> 1 & 1u) * side;
@@ -107,7 +108,7 @@ void step_down(View view, Packet packet, inout SharedWalk walk) {
         open_cells[CELLS_PER_LANE * share_first + walk.found + subgroupBallotExclusiveBitCount(cells)] = packed_node(node, 0);
     walk.size += subgroupBallotBitCount(parents);
     walk.found += subgroupBallotBitCount(cells);
-    subgroupMemoryBarrierShared();
+    subgroupBarrier();
 }
 
 // Walks at least a step, and until there is a cell for each lane, or no node left. Gives each lane one of them; false: there is none for it.
@@ -120,5 +121,6 @@ bool next_cells(View view, Packet packet, inout SharedWalk walk, out ivec2 cell)
     walk.found -= taken;
     bool mine = lane < taken;
     cell = cell_of(open_cells[CELLS_PER_LANE * share_first + walk.found + (mine ? lane : 0u)]);
+    subgroupBarrier();
     return mine;
 }

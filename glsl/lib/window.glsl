@@ -29,3 +29,11 @@ uint place_of_bit(uvec2 bits, uint rank) {
     }
     return place + (high ? 32u : 0u);
 }
+
+// The first `count` of the bits that are set.
+uvec2 first_bits(uvec2 bits, uint count) {
+    if (bitCount(bits.x) + bitCount(bits.y) <= count) return bits;
+    uint end = place_of_bit(bits, count);
+    uint below = (1u << (end & 31u)) - 1u;
+    return end < 32u ? uvec2(bits.x & below, 0u) : uvec2(bits.x, bits.y & below);
+}

@@ -3,7 +3,10 @@
 
 use super::pass::{Domain, Pass, Work};
 use super::resource::{Resource, Shape, Sizes};
-use crate::shared::{Kernel, Lists, Packet, Progress, Round, Window};
+use crate::shared::{Kernel, Lists, Packet, Progress, Round, TILE_SIZE, WINDOW_PIXELS_MIN, Window};
+
+/// Most windows of a tile.
+const WINDOWS_PER_TILE: u64 = (TILE_SIZE * TILE_SIZE / WINDOW_PIXELS_MIN) as u64;
 
 const CLEAR_LISTS: Pass = Pass::new("clear_lists", Work::Clear(&["lists", "rounds"]));
 
@@ -23,7 +26,7 @@ pub const RESOURCES: &[Resource] = &[
         Shape::array::<Kernel>(s.pixels()).when(s.kernels)
     }),
     Resource::new("windows", |s| {
-        Shape::array::<Window>(s.tiles()).when(s.windows)
+        Shape::array::<Window>(s.tiles() * WINDOWS_PER_TILE).when(s.windows)
     }),
     Resource::new("packets", |s| {
         Shape::array::<Packet>(s.packets()).when(s.packet_lists)
