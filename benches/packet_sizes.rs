@@ -33,7 +33,8 @@ fn scaled(mut shot: Shot, scale: f64) -> Shot {
     for light in &mut shot.lights {
         match &mut light.shape {
             LightShape::Rect { u, v } => (*u, *v) = (*u * scale, *v * scale),
-            LightShape::Disc { radius, .. } => *radius *= scale,
+            LightShape::Disc { radius, .. } | LightShape::Sphere { radius } => *radius *= scale,
+            LightShape::Sun { angle_deg, .. } => *angle_deg *= scale,
         }
     }
     shot

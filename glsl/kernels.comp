@@ -92,7 +92,7 @@ Kernel kernel_at(View view, uvec2 pixel) {
     SurfacePoint point = surface_at(pixel);
     vec3 to_point = point.position - view.center;
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (!point.exists || !in_view(view, to_point, point.normal)) return kernel;
+    if (!point.exists || !in_view(view, point.position, point.normal)) return kernel;
     kernel.status = KERNEL_LIT;
     Fit fit = fits[push.index];
     if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error));

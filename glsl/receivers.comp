@@ -25,8 +25,8 @@ struct Reach {
 
 const float NONE = -1e38;
 
-void include(inout Reach reach, View view, Box light, vec3 to_point) {
-    vec3 p = to_face(view, to_point);
+void include(inout Reach reach, View view, Box light, vec3 position) {
+    vec3 p = to_face(view, mapped(view, position - view.center));
     reach.upper = max(reach.upper, p);
     reach.negated_lower = max(reach.negated_lower, -p);
     reach.slopes = max(reach.slopes, slopes_to(light, p));
@@ -41,8 +41,7 @@ void main() {
     uint pixels = frame.size.x * frame.size.y;
     for (uint index = gl_GlobalInvocationID.x; index < pixels; index += stride) {
         SurfacePoint point = surface_at(pixel_at(index));
-        vec3 to_point = point.position - view.center;
-        if (point.exists && in_view(view, to_point, point.normal)) include(reach, view, light, to_point);
+        if (point.exists && in_view(view, point.position, point.normal)) include(reach, view, light, point.position);
     }
     uint count = subgroupAdd(reach.count);
     vec3 upper = subgroupMax(reach.upper);

@@ -5,6 +5,7 @@
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "share.glsl"
+#include "facing.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -16,15 +17,15 @@ writeonly BUFFER(visibility);
 #include "surface.glsl"
 
 // Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding.
-bool faces_light(Light light, vec3 position, vec3 normal) {
-    vec3 to_point = position - light.center;
+bool faces_light(Facing facing, vec3 normal) {
+    Light light = facing.light;
+    vec3 to_point = -facing.way;
     precise vec2 along = abs(vec2(dot_exact(normal, light.u), dot_exact(normal, light.v))) * light.half_size;
     precise float square = along.x * along.x + along.y * along.y;
     precise float reach = light.round != 0u ? sqrt(square) : along.x + along.y;
-    precise vec3 magnitude = abs(to_point) + abs(light.center);
-    precise float rounding = HORIZON_ROUNDING * (magnitude.x + magnitude.y + magnitude.z);
+    precise float rounding = HORIZON_ROUNDING * (facing.magnitude.x + facing.magnitude.y + facing.magnitude.z);
     precise float height = reach - dot_exact(normal, to_point);
-    return (light.all_sides != 0u || dot_exact(to_point, light.n) > rounding) && height > rounding;
+    return (light.spread == SPREAD_POINT || dot_exact(to_point, light.n) > rounding) && height > rounding;
 }
 
 void main() {
@@ -36,7 +37,9 @@ void main() {
     float result = uintBitsToFloat(0x7fc00000u);
     if (point.exists) {
         result = 0.0;
-        if (faces_light(light, point.position, point.normal))
+        Facing facing = facing_of(light, point.position, point.normal);
+        if (facing.inside) result = 1.0;
+        else if (faces_light(facing, point.normal))
             result = light.view_count == 0u ? 1.0 : 1.0 - share_of(occlusion[index], light.weight_sum);
     }
     visibility[push.index * frame.size.x * frame.size.y + index] = result;

@@ -22,6 +22,8 @@ void main() {
     vec2 window = fits[push.index].focal * p.xy + (fits[push.index].center + 0.5) * p.z;
     float depth = BOTTOMS ? p.z - fits[push.index].near : fits[push.index].near;
     gl_Position = vec4(window * (2.0 / float(view.map_size)) - p.z, depth, p.z);
+    // Of parallel rays, what is interpolated goes with lengths in the scene.
+    if (PARALLEL) gl_Position /= p.z;
     uv = TEXTURED ? texcoords[gl_VertexIndex] : vec2(0.0);
     surface_index = TEXTURED ? vertex_surfaces[gl_VertexIndex] : 0u;
 }

@@ -129,6 +129,12 @@
 // `shape` of a light: a disc.
 #define HS_LIGHT_DISC 1
 
+// `shape` of a light: a sphere, which shines to all sides.
+#define HS_LIGHT_SPHERE 2
+
+// `shape` of a light: a sun, light from infinity.
+#define HS_LIGHT_SUN 3
+
 // `technique`: Packet-based hierarchical contours [Yang09], the library's own.
 #define HS_TECHNIQUE_PACKET_CONTOUR 0
 
@@ -405,7 +411,7 @@ typedef struct hs_camera {
     uint32_t height;
 } hs_camera;
 
-// A flat, one-sided light of constant radiance. Without extent it is a point and its shadow is hard; a disc with a normal is
+// A light of constant radiance; flat ones are one-sided. Without extent it is a point and its shadow is hard; a disc with a normal is
 // the limit of small discs then, and other points shine to all sides alike.
 typedef struct hs_light {
     // HS_TYPE_LIGHT
@@ -414,19 +420,19 @@ typedef struct hs_light {
     uint32_t size;
     // NULL
     const void *next;
-    // [scene units]
+    // [scene units] Of a sun without meaning.
     double center[3];
     // [scene units] Half-axis of a rectangle.
     double u[3];
     // [scene units] Half-axis of a rectangle, perpendicular to `u`; it shines along u x v.
     double v[3];
-    // Along which a disc shines; any length but 0, unless the radius is 0.
+    // Along which a disc or a sun shines; any length but 0, unless it is a disc whose radius is 0.
     double normal[3];
-    // [scene units] Of a disc.
+    // [scene units] Of a disc or a sphere. [degree] [0, 180) Of a sun: its angular diameter.
     double radius;
     // [0, ...) Linear RGB.
     float color[3];
-    // [radiance] Of a light without extent: radiant intensity. Below 0: such that a white surface at the camera's target
+    // [radiance] Of a light without extent: radiant intensity; of a sun: irradiance of a surface that faces it. Below 0: such that a white surface at the camera's target
     // that faces the light has radiance 1.
     float intensity;
     // HS_LIGHT_...

@@ -111,7 +111,8 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
         let parts = technique::parts(light, &shot.settings.of_light(light));
         let placed = Placed::of_shot(shot, light);
         let look = |side: &_| survey(shot, &frustum, side, &parts, placed.touch);
-        let found: Vec<LightCoverage> = light.sides().iter().map(look).collect();
+        let sides = light.sides(&placed.ball);
+        let found: Vec<LightCoverage> = sides.iter().map(look).collect();
         (Draft::new(&shot.settings, placed, parts, &found), found)
     };
     let (drafts, found): (Vec<_>, Vec<_>) = shot.lights.iter().map(cover).unzip();

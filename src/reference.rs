@@ -12,7 +12,7 @@ use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 
 use crate::image::Plane;
-use crate::scene::Scene;
+use crate::scene::{Ball, Scene};
 use crate::shot::Shot;
 use crate::{Error, Result};
 use bvh::{Bvh, Hit, Ray};
@@ -183,7 +183,7 @@ impl<'a> Tracer<'a> {
             origin: shot.origin(),
             near: shot.camera.near.unwrap_or(0.0),
             pinhole: Pinhole::new(&shot.camera, shot.width, shot.height)?,
-            emitter: Emitter::new(area_light, shot.origin())?,
+            emitter: Emitter::new(area_light, Ball::around(scene.bounds()), shot.origin())?,
             touch: shot.touch(area_light),
             width: shot.width as usize,
             batch_samples: options.samples.div_ceil(BATCHES),
@@ -200,22 +200,21 @@ impl<'a> Tracer<'a> {
                 standard_error: nothing,
             };
         };
-        let facing = self.emitter.share_in_front(receiver.point, receiver.normal);
+        let exact = |visibility: f64, facing: f64| Pixel {
+            visibility,
+            facing,
+            standard_error: 0.0,
+        };
+        let Some(emitter) = self.emitter.seen_from(receiver.point) else {
+            return exact(1.0, 1.0);
+        };
+        let facing = emitter.share_in_front(receiver.point, receiver.normal);
         if facing == 0.0 {
-            return Pixel {
-                visibility: 0.0,
-                facing,
-                standard_error: 0.0,
-            };
+            return exact(0.0, facing);
         }
-        if self.emitter.is_point() {
-            let occluded = self.occluded(&receiver, self.emitter.point(0.5, 0.5), scratch);
-            let visibility = if occluded { 0.0 } else { 1.0 };
-            return Pixel {
-                visibility,
-                facing,
-                standard_error: 0.0,
-            };
+        if emitter.is_point() {
+            let occluded = self.occluded(&receiver, &emitter, (0.5, 0.5), scratch);
+            return exact(if occluded { 0.0 } else { 1.0 }, facing);
         }
         let pixel_seed = mix(self.seed ^ mix((y * self.width + x) as u64));
         let means: [f64; BATCHES as usize] = std::array::from_fn(|batch| {
@@ -223,10 +222,8 @@ impl<'a> Tracer<'a> {
             let coordinate =
                 |index, dimension| f64::from(sobol_burley::sample(index, dimension, seed));
             let lit = (0..self.batch_samples).filter(|&index| {
-                let on_light = self
-                    .emitter
-                    .point(coordinate(index, 0), coordinate(index, 1));
-                !self.occluded(&receiver, on_light, scratch)
+                let at = (coordinate(index, 0), coordinate(index, 1));
+                !self.occluded(&receiver, &emitter, at, scratch)
             });
             lit.count() as f64 / f64::from(self.batch_samples)
         });
@@ -266,16 +263,23 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// Whether something stands between the receiver and a point on the light. What lies below the
+    /// Whether something stands between the receiver and a point on the light as it sees it. What lies below the
     /// receiver's own horizon does not count as occluded.
-    fn occluded(&self, receiver: &Receiver, on_light: DVec3, scratch: &mut Scratch) -> bool {
+    fn occluded(
+        &self,
+        receiver: &Receiver,
+        emitter: &Emitter,
+        (a, b): (f64, f64),
+        scratch: &mut Scratch,
+    ) -> bool {
+        let on_light = emitter.point(a, b);
         if receiver.normal.dot(on_light - receiver.point) <= 0.0 {
             return false;
         }
         let start = receiver.point + receiver.normal * receiver.offset;
         let ray = Ray::new(start, on_light - start);
         // A lamp's own surface casts no shadow.
-        let end = self.emitter.share_before(start, on_light, self.touch);
+        let end = emitter.share_before(start, on_light, self.touch);
         let opaque = |hit: &Hit| self.scene.casts(hit.triangle) && self.opaque(hit);
         let again = |slot| {
             self.bvh

@@ -22,6 +22,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
+pub use light::{Ball, Cone, SUN_ANGLE_DEG, Side, Spread, mapped};
 pub(crate) use primitive::MAX_COORDINATE;
 pub use shape::Shape;
 pub use triangles::Triangles;
@@ -122,9 +123,14 @@ pub enum LightShape {
     Rect { u: DVec3, v: DVec3 },
     /// [scene units] The light shines along `normal` (any length but 0, unless the radius is 0).
     Disc { normal: DVec3, radius: f64 },
+    /// [scene units] It shines to all sides.
+    Sphere { radius: f64 },
+    /// Light from infinity along `direction` (any length but 0). [degree] \[0, 180) The angular diameter of the disc that it
+    /// comes from. The light's centre is of no meaning.
+    Sun { direction: DVec3, angle_deg: f64 },
 }
 
-/// A one-sided planar light of constant radiance.
+/// A light of constant radiance; flat ones are one-sided.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AreaLight {
     pub name: String,
@@ -133,7 +139,7 @@ pub struct AreaLight {
     pub shape: LightShape,
     /// Linear RGB, ≥ 0.
     pub color: Vec3,
-    /// [radiance] Of a light without extent: radiant intensity. None: such that a white surface at the camera's target
+    /// [radiance] Of a light without extent: radiant intensity; of a sun: irradiance of a surface that faces it. None: such that a white surface at the camera's target
     /// that faces the light has radiance 1.
     pub intensity: Option<f32>,
 }

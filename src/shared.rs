@@ -163,6 +163,20 @@ shared_constants! {
     /// Kernel of a pixel that this view has nothing to say about: no surface there, another face's
     /// receiver, or one that faces away.
     KERNEL_NONE: uint = 3;
+    /// A light shines from its plane to one side.
+    SPREAD_PLANE: uint = 0;
+    /// From a point to all sides alike.
+    SPREAD_POINT: uint = 1;
+    /// From infinity.
+    SPREAD_SUN: uint = 2;
+    /// To all sides; each receiver sees a disc that faces it.
+    SPREAD_SPHERE: uint = 3;
+    /// Cells along a side of the cube that cuts the receivers of a sphere into cones. A receiver at a cone's border sees the disc
+    /// that faces the cone narrower by the cosine of their angle.
+    CONE_SPLIT: uint = 2;
+    CONE_COUNT: uint = 24;
+    /// No matter which cone; they are numbered from 1.
+    ALL_CONES: uint = 0;
     /// A host's normals are stored as they are, each component from −1 to 1.
     NORMAL_SIGNED: uint = 0;
     /// They are moved to [0, 1].
@@ -220,14 +234,14 @@ shared! {
         v: vec3,
         /// Unit vector along which it shines.
         n: vec3,
-        /// [scene units] Half sizes along u and v; the radius, twice, for a disc.
+        /// [scene units] Half sizes along u and v; the radius, twice, for a disc; the tangent of a sun's angular radius.
         half_size: vec2,
         /// 1 = disc.
         round: uint,
         /// Sum of the weights of its views' sub-lights, summed in f32 in the order of the views.
         weight_sum: float,
-        /// 1 = a point without direction: it shines to all sides alike.
-        all_sides: uint,
+        /// One of `SPREAD_…`.
+        spread: uint,
         /// [radiance · scene units²] Linear RGB radiance times area: the radiant intensity along `n`, which does not
         /// end where the area does.
         intensity: vec3,
@@ -277,6 +291,15 @@ shared! {
         bias: float,
         /// [level] Number of the hierarchy's levels that there is memory for.
         levels_max: uint,
+        /// [scene units] Not 0: rays to the sub-light are parallel, and this is the L of the map that takes it to a disc
+        /// (`scene/light/sun.rs`); `center` is a point of the plane.
+        parallel: float,
+        /// Their direction; its component along `light_n` is 1.
+        ray: vec3,
+        /// [scene units] Centre and radius of the sphere that the sub-light is of; cones are seen from there.
+        sphere: vec4,
+        /// The view's receivers are those in this cone; ALL_CONES: whatever cone they are in.
+        cone: uint,
     }
 
     /// What the device finds out about a view: bounds, then the projection fitted to them, then the

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{AreaLight, LightShape};
+use crate::scene::AreaLight;
 use crate::shared::SECTOR_STEPS;
 
 /// One part of a light: the unit that has a shadow map of its own.
@@ -58,12 +58,12 @@ const SCRAMBLE: u32 = 1;
 /// A light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
 /// A light without extent has one part without extent.
 pub fn parts(light: &AreaLight, split: u32) -> Vec<Part> {
-    match light.shape {
+    match light.is_round() {
         _ if light.is_point() => vec![Part::point(DVec2::ZERO)],
-        LightShape::Rect { .. } => grid(split)
+        false => grid(split)
             .map(|middle| Part::whole(middle, f64::from(split)))
             .collect(),
-        LightShape::Disc { .. } => parts_of_disc(split).to_vec(),
+        true => parts_of_disc(split).to_vec(),
     }
 }
 
@@ -290,6 +290,7 @@ fn direction(parameter: f64) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::LightShape;
     use glam::Vec3;
 
     fn sub_lights(light: &AreaLight, split: u32) -> Vec<SubLight> {

@@ -6,6 +6,7 @@
 
 pub mod classify;
 pub mod contour;
+pub mod facing;
 pub mod hierarchy;
 pub mod irradiance;
 pub mod kernels;

@@ -40,7 +40,7 @@ fn receivers(traces: &Traces, points: &[Option<Point>]) -> Vec<Seen> {
     let (view, oblique) = (&traces.planned.view, traces.planned.oblique);
     let receiver = |point: &Point| {
         let to_point = point.position - Vec3::from(view.center);
-        in_view(view, to_point, point.normal)
+        in_view(view, point.position, point.normal)
             .then(|| project(view, &traces.fit, oblique, to_point, point.normal))
     };
     points
@@ -452,5 +452,30 @@ fn a_hierarchy_of_16_bits() {
         shot.settings.split = 1;
         shot.settings.mssm_bits = 16;
         check(gpu, "staircase, bounds of 16 bits", &shot);
+    });
+}
+
+#[test]
+fn the_parallel_maps_of_a_sun() {
+    with_device(|gpu| {
+        for (name, angle_deg) in [("knot", 4.0), ("grid", 30.0)] {
+            let mut shot = shot(name);
+            shot.lights[0].shape = LightShape::Sun {
+                direction: DVec3::new(0.5, -1.0, 0.2),
+                angle_deg,
+            };
+            shot.settings.split = 2;
+            check(gpu, &format!("{name} under a sun"), &shot);
+        }
+    });
+}
+
+#[test]
+fn the_cones_of_a_sphere() {
+    with_device(|gpu| {
+        let mut shot = shot("grid");
+        shot.lights[0].shape = LightShape::Sphere { radius: 0.3 };
+        shot.settings.split = 1;
+        check(gpu, "grid under a sphere", &shot);
     });
 }

@@ -191,7 +191,7 @@ fn nonsense_is_refused() {
     assert!(error(|json| json["lights"][1]["normal"] = json!([0, 0, 0])).contains("no length"));
     assert!(error(|json| json["lights"][1]["color"] = json!([0, -1, 0])).contains("color"));
     assert!(error(|json| json["lights"][1]["intensity"] = 1e39.into()).contains("intensity"));
-    assert!(error(|json| json["lights"][1]["type"] = "sphere".into()).contains("sphere"));
+    assert!(error(|json| json["lights"][1]["type"] = "cube".into()).contains("cube"));
     assert!(error(|json| json["lights"] = json!([])).contains("brings no area light"));
     assert!(error(|json| json["scene"] = "none.glb".into()).contains("none.glb"));
     assert!(error(|json| json["scene"] = 3.into()).contains("is not a shot file"));
@@ -248,6 +248,34 @@ fn lights_without_extent_are_hard() {
     json["lights"][0]["normal"] = json!([0, -2, 0]);
     let lights = load(&json).unwrap().lights;
     assert!(lights[0].is_point() && !lights[0].is_point_without_direction());
+}
+
+#[test]
+fn suns_and_spheres() {
+    let mut json = example();
+    json["lights"] = json!([
+        {"type": "sun", "direction": [0, -2, 0]},
+        {"type": "sphere", "center": [0, 3, 0], "radius": 0.5},
+    ]);
+    let lights = load(&json).unwrap().lights;
+    let direction = DVec3::new(0.0, -2.0, 0.0);
+    let shape = LightShape::Sun {
+        direction,
+        angle_deg: 0.533,
+    };
+    assert_eq!(lights[0].shape, shape);
+    assert_eq!(lights[1].shape, LightShape::Sphere { radius: 0.5 });
+    let refused = |index: usize, key: &str, value: serde_json::Value| {
+        let mut json = json.clone();
+        json["lights"][index][key] = value;
+        load(&json).unwrap_err().to_string()
+    };
+    assert!(refused(0, "direction", json!([0, 0, 0])).contains("direction"));
+    assert!(refused(0, "angle_deg", json!(180)).contains("less than 180"));
+    assert!(refused(1, "radius", json!(-1)).contains("radius"));
+    assert!(refused(1, "center", json!(null)).contains("center"));
+    json["lights"] = json!([{"type": "sun"}]);
+    assert!(load(&json).unwrap_err().to_string().contains("direction"));
 }
 
 #[test]

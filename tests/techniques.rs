@@ -295,9 +295,10 @@ fn check_widths(gpu: &Arc<halfshade::gpu::Gpu>, shot: &Shot, settings: &Settings
         .expect("occlusion");
     let mut partly = 0;
     for ((position, normal), found) in positions.iter().zip(&normals).zip(&occlusion) {
-        let to_point = Vec3::from_slice(position) - Vec3::from(planned.view.center);
+        let position_eye = Vec3::from_slice(position);
+        let to_point = position_eye - Vec3::from(planned.view.center);
         let normal = Vec3::from_slice(normal);
-        if position[3] == 0.0 || !in_view(&planned.view, to_point, normal) {
+        if position[3] == 0.0 || !in_view(&planned.view, position_eye, normal) {
             continue;
         }
         let receiver = project(&planned.view, &fit, false, to_point, normal);

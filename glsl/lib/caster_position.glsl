@@ -10,5 +10,5 @@ readonly BUFFER(position_residuals);
 vec3 caster_position(View view, uint vertex) {
     vec3 residual = RESIDUALS ? position_residuals[vertex] : vec3(0.0);
     precise vec3 way = (positions[vertex] - view.center) + (residual - view.center_residual);
-    return to_face(view, way);
+    return to_face(view, mapped(view, way));
 }

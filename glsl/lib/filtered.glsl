@@ -34,7 +34,7 @@ void main() {
     Fit fit = fits[push.index];
     SurfacePoint point = surface_at(pixel);
     vec3 to_point = point.position - view.center;
-    bool looked_at = point.exists && in_view(view, to_point, point.normal) && fit.level_count > 0u;
+    bool looked_at = point.exists && in_view(view, point.position, point.normal) && fit.level_count > 0u;
     float occluded = 0.0;
     // A loop, since some drivers execute both sides of an `if`: of the pixels of a side face most are another face's.
     [[dont_unroll]] for (uint once = 0u; once < uint(looked_at); ++once)

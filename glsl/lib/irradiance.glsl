@@ -18,6 +18,8 @@
 // are above 1e-3: the one at the light, of the way to its centre, and the height of the light's highest point over the sum of
 // distance and half sizes. Where one is below 1e-4, the rounding of positions and normals decides. Finite everywhere.
 
+#include "facing.glsl"
+
 // [scale] Shorter lengths are taken for it: the limit of a point is reached within a share of 1e-18.
 const float SHORTEST = 1e-9;
 const float PI = 3.14159265;
@@ -171,9 +173,11 @@ float irradiance_by_seen(SeenLight seen) {
 }
 
 // [1 / scene units²] Irradiance at a point by a light whose radiance times area is 1.
-float irradiance(Light light, vec3 position, vec3 normal) {
-    vec3 way = light.center - position;
-    if (light.all_sides != 0u) {
+float irradiance(Light whole_light, vec3 position, vec3 normal) {
+    Facing facing = facing_of(whole_light, position, normal);
+    Light light = facing.light;
+    vec3 way = facing.way;
+    if (light.spread == SPREAD_POINT) {
         float square = max(dot(way, way), 1e-36);
         return max(dot(way, normal), 0.0) / (square * sqrt(square));
     }
@@ -184,5 +188,6 @@ float irradiance(Light light, vec3 position, vec3 normal) {
     if (!(seen.distance > 0.0)) return 0.0;
     seen.distance = max(seen.distance, SHORTEST);
     float area = (seen.disc ? PI : 4.0) * seen.half_size.x * seen.half_size.y;
-    return min(irradiance_by_seen(seen) / area * inverse_scale * inverse_scale, 1e38);
+    // Inside a sphere of constant radiance a hemisphere of it is seen; the cap of `area` gives what its centre cannot.
+    return min(irradiance_by_seen(seen) / area * inverse_scale * inverse_scale * facing.area, 1e38);
 }

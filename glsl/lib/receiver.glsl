@@ -25,6 +25,11 @@ float dot_exact(vec3 a, vec3 b) {
     return sum;
 }
 
+#include "parallel.glsl"
+#include "cone.glsl"
+
+layout(constant_id = 54) const bool CONES = false;  // the view's receivers are those in its cone
+
 // A direction or relative position in the frame of the view's face.
 vec3 to_face(View view, vec3 world) {
     return vec3(dot_exact(world, view.right), dot_exact(world, view.up), dot_exact(world, view.forward));
@@ -39,9 +44,13 @@ uint face_of(vec3 in_light, float reach) {
 }
 
 // Whether the sub-light's view has to look at a surface point: it lies in front of the light, belongs
-// to the view's face, and at least a part of the sub-light is in front of it.
-// to_point: from the sub-light's centre; normal: of the visible side.
-bool in_view(View view, vec3 to_point, vec3 normal) {
+// to the view's face and cone, and at least a part of the sub-light is in front of it.
+// position: relative to the eye; normal: of the visible side.
+bool in_view(View view, vec3 position, vec3 normal) {
+    if (CONES && cone_of(view.sphere, position) != view.cone) return false;
+    vec3 way = position - view.center;
+    vec3 to_point = mapped(view, way);
+    normal = mapped_normal(view, way, normal);
     precise vec3 in_light = vec3(dot_exact(to_point, view.light_u) * view.half_size.x * view.half_size.x,
                                  dot_exact(to_point, view.light_v) * view.half_size.y * view.half_size.y,
                                  dot_exact(to_point, view.light_n));
@@ -58,7 +67,7 @@ bool in_view(View view, vec3 to_point, vec3 normal) {
 // error: [scene units] by how much the point may be off, beyond what 32 bits round off.
 Receiver project(View view, Fit fit, vec3 to_point, vec3 normal, float error) {
     Receiver receiver;
-    precise vec3 p = to_face(view, to_point);
+    precise vec3 p = to_face(view, mapped(view, to_point));
     precise float inverse_z = 1.0 / p.z;
     precise vec2 t = fit.focal * (p.xy * inverse_z) + fit.center;
     // Contour vertices lie on multiples of ½. One ulp beside them, no vertex is ever exactly at the
@@ -66,12 +75,13 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal, float error) {
     if (fract(2.0 * t.x) == 0.0) t.x = uintBitsToFloat(floatBitsToUint(t.x) + 1u);
     precise float d = fit.near * inverse_z;
 
-    vec3 n = to_face(view, normal);
+    vec3 n = to_face(view, mapped_normal(view, to_point, normal));
     precise float height = dot_exact(n, p);
     precise vec2 slope = abs(n.xy) * fit.near / (fit.focal * max(abs(height), 1e-30));
     precise float slope_bias = min((slope.x + slope.y) * view.bias, BIAS_SLOPE_MAX * d);
     precise vec3 magnitude = abs(to_point) + abs(view.center);
-    precise float rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * inverse_z);
+    precise float nearness = PARALLEL ? 1.0 / height_of(view, to_point) : inverse_z;
+    precise float rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * nearness);
     // A plane that is off by `error` has depths that are off by the same share as its distance from the light.
     precise float misplaced = d * min(error / max(abs(height), 1e-30), 1.0);
     precise float biased = d + slope_bias + rounding + misplaced;

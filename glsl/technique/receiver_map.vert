@@ -31,6 +31,7 @@ void main() {
     vec4 position = vec4(window * (2.0 / float(view.map_size)) - p.z, TELLS_CASTERS ? fit.near : p.z - fit.near, p.z);
     // What casts is moved out of sight.
     gl_Position = TELLS_CASTERS && casts(triangle) ? vec4(0.0, 0.0, -1.0, 1.0) : position;
+    if (PARALLEL) gl_Position /= gl_Position.w;
     uv = TEXTURED ? texcoords[vertex] : vec2(0.0);
     surface_index = TEXTURED ? triangle_surfaces[triangle] : 0u;
     bias = view.bias * grid.focal / fit.focal;

@@ -153,9 +153,16 @@ pub fn light(given: &hs_light) -> CallResult<AreaLight> {
             normal: DVec3::from_array(given.normal),
             radius: given.radius,
         },
+        HS_LIGHT_SPHERE => LightShape::Sphere {
+            radius: given.radius,
+        },
+        HS_LIGHT_SUN => LightShape::Sun {
+            direction: DVec3::from_array(given.normal),
+            angle_deg: given.radius,
+        },
         other => {
             return Err(Fault::invalid(format!(
-                "the shape of a light is HS_LIGHT_RECT or HS_LIGHT_DISC, not {other}"
+                "the shape of a light is one of HS_LIGHT_..., not {other}"
             )));
         }
     };

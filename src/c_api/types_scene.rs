@@ -149,8 +149,12 @@ pub struct hs_camera {
 pub const HS_LIGHT_RECT: u32 = 0;
 /// `shape` of a light: a disc.
 pub const HS_LIGHT_DISC: u32 = 1;
+/// `shape` of a light: a sphere, which shines to all sides.
+pub const HS_LIGHT_SPHERE: u32 = 2;
+/// `shape` of a light: a sun, light from infinity.
+pub const HS_LIGHT_SUN: u32 = 3;
 
-/// A flat, one-sided light of constant radiance. Without extent it is a point and its shadow is hard; a disc with a normal is
+/// A light of constant radiance; flat ones are one-sided. Without extent it is a point and its shadow is hard; a disc with a normal is
 /// the limit of small discs then, and other points shine to all sides alike.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -161,19 +165,19 @@ pub struct hs_light {
     pub size: u32,
     /// NULL
     pub next: *const c_void,
-    /// [scene units]
+    /// [scene units] Of a sun without meaning.
     pub center: [f64; 3],
     /// [scene units] Half-axis of a rectangle.
     pub u: [f64; 3],
     /// [scene units] Half-axis of a rectangle, perpendicular to `u`; it shines along u x v.
     pub v: [f64; 3],
-    /// Along which a disc shines; any length but 0, unless the radius is 0.
+    /// Along which a disc or a sun shines; any length but 0, unless it is a disc whose radius is 0.
     pub normal: [f64; 3],
-    /// [scene units] Of a disc.
+    /// [scene units] Of a disc or a sphere. [degree] [0, 180) Of a sun: its angular diameter.
     pub radius: f64,
     /// [0, ...) Linear RGB.
     pub color: [f32; 3],
-    /// [radiance] Of a light without extent: radiant intensity. Below 0: such that a white surface at the camera's target
+    /// [radiance] Of a light without extent: radiant intensity; of a sun: irradiance of a surface that faces it. Below 0: such that a white surface at the camera's target
     /// that faces the light has radiance 1.
     pub intensity: f32,
     /// HS_LIGHT_...

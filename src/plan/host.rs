@@ -9,7 +9,7 @@ use super::{Outputs, Plan};
 use crate::error::{Error, Result};
 use crate::frame::{Casters, Front, Inventory, Surface};
 use crate::gpu::Limits;
-use crate::scene::AreaLight;
+use crate::scene::{AreaLight, Ball, Spread};
 use crate::shared;
 use crate::shot::MAX_SIZE;
 use crate::technique::Settings;
@@ -43,6 +43,11 @@ impl HostFrame {
             )));
         }
         self.light.validate()?;
+        if matches!(self.light.spread(), Spread::Sun | Spread::Sphere) {
+            return Err(Error::Unsupported(
+                "an effect takes rectangles, discs and points; a renderer takes suns and spheres as well".into(),
+            ));
+        }
         self.settings.validate()?;
         let most = u32::MAX / 3;
         if self.vertices > most || self.triangles > most || self.instances > most {
@@ -93,7 +98,7 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
         touching: false,
     };
     let parts = technique::parts(&host.light, &settings.of_light(&host.light));
-    let found = vec![found; host.light.sides().len()];
+    let found = vec![found; host.light.side_count()];
     let draft = Draft::new(settings, placed(&host.light), parts, &found);
     plan.add_lights(vec![draft], settings, limits)?;
     if host.casters == Casters::Maps {
@@ -111,6 +116,12 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     Ok(plan)
 }
 
+/// A host's scene is not known.
+const NOWHERE: Ball = Ball {
+    center: DVec3::ZERO,
+    radius: 1.0,
+};
+
 /// A light among a host's positions, which are relative to whatever origin it has chosen.
 fn placed(light: &AreaLight) -> Placed<'_> {
     Placed {
@@ -118,6 +129,7 @@ fn placed(light: &AreaLight) -> Placed<'_> {
         origin: DVec3::ZERO,
         touch: light.touch(light.center.abs().max_element()),
         intensity: [0.0; 3],
+        ball: NOWHERE,
     }
 }
 
@@ -129,10 +141,9 @@ impl Plan {
     pub fn place(&mut self, light: &AreaLight) -> Result<()> {
         let placed = placed(light);
         for planned in &mut self.lights {
-            let round = matches!(light.shape, crate::scene::LightShape::Disc { .. });
-            let all_sides = u32::from(light.is_point_without_direction());
+            let (round, spread) = (light.is_round(), light.spread() as u32);
             let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2])
-                || all_sides != planned.light.all_sides;
+                || spread != planned.light.spread;
             if recipe_changes || u32::from(round) != planned.light.round {
                 return Err(Error::Invalid(
                     "the light has another shape than the one that the effect was made for".into(),

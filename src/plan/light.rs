@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::survey::LightCoverage;
 use super::views::{self, MapParams, ViewPose};
-use crate::scene::AreaLight;
+use crate::scene::{AreaLight, Ball};
 use crate::shared::{self, View};
 use crate::shot::Shot;
 use crate::sub_light::{Part, evenly_spread};
@@ -93,6 +93,8 @@ pub(super) struct Placed<'a> {
     pub touch: f64,
     /// See [`views::intensity`].
     pub intensity: [f32; 3],
+    /// Around the scene.
+    pub ball: Ball,
 }
 
 impl<'a> Placed<'a> {
@@ -102,6 +104,7 @@ impl<'a> Placed<'a> {
             origin: shot.origin(),
             touch: shot.touch(light),
             intensity: views::intensity(shot, light),
+            ball: Ball::around(shot.scene.bounds()),
         }
     }
 
@@ -113,6 +116,7 @@ impl<'a> Placed<'a> {
             bias: settings.bias(),
             touch: self.touch,
             levels,
+            ball: self.ball,
         }
     }
 }
@@ -160,12 +164,16 @@ impl<'a> Draft<'a> {
             _ => Lighting::Shadowed,
         };
         let settings = settings.of_light(placed.light);
-        let (near, near_count): (&[bool], _) = match settings.has_near_points() {
-            true => (&found[0].near, found[0].near_count()),
-            false => (&[], 0),
-        };
         let part_count = parts.len();
-        let sampled = sampled(settings, parts, near, found[0].faces(POINT_REACH).len());
+        let is_near = |part: usize| {
+            let near = |side: &LightCoverage| side.near.get(part).copied().unwrap_or(false);
+            settings.has_near_points() && found.iter().any(near)
+        };
+        let near: Vec<bool> = (0..part_count).map(is_near).collect();
+        let near_count = near.iter().filter(|near| **near).count();
+        let sides = found.iter().filter(|side| side.casters);
+        let faces: usize = sides.map(|side| side.faces(POINT_REACH).len()).sum();
+        let sampled = sampled(settings, parts, &near, faces);
         Self {
             placed,
             lighting,
@@ -235,7 +243,7 @@ fn draft_sets(sampled: &[(Settings, Vec<Part>)], found: &[LightCoverage]) -> Vec
         let set = move |(settings, parts): &(Settings, Vec<Part>)| DraftSet {
             settings: settings.clone(),
             recipe: Recipe::new(settings),
-            poses: poses(settings, parts, side, index > 0),
+            poses: poses(settings, parts, side, index),
         };
         sampled.iter().map(set).collect::<Vec<_>>()
     };
@@ -247,7 +255,7 @@ fn poses(
     settings: &Settings,
     parts: &[Part],
     found: &LightCoverage,
-    turned: bool,
+    index: usize,
 ) -> Vec<ViewPose> {
     let reach = settings.technique.method().reach();
     let faces = found.faces(reach);
@@ -259,7 +267,7 @@ fn poses(
         let pose = |&face: &usize| ViewPose {
             part: part.clone(),
             face,
-            turned,
+            side: index,
             reach,
         };
         faces.iter().map(pose).collect::<Vec<_>>()
@@ -276,7 +284,7 @@ fn sampled(
     near: &[bool],
     faces: usize,
 ) -> Vec<(Settings, Vec<Part>)> {
-    let count = f64::from(settings.near_points) / (faces as f64).sqrt();
+    let count = f64::from(settings.near_points) / (faces.max(1) as f64).sqrt();
     let on_light: Vec<DVec2> = evenly_spread(count.ceil() as u32).collect();
     let is_near = |index: usize| near.get(index).copied().unwrap_or(false);
     let (mut whole, mut points) = (Vec::new(), Vec::new());

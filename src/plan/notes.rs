@@ -6,7 +6,7 @@ use super::light::Placed;
 use super::patches::{Occluders, fraction_bits};
 use super::survey::{self, LightCoverage};
 use super::{LightPlan, Lighting, Plan};
-use crate::scene::AreaLight;
+use crate::scene::{AreaLight, Ball, Spread};
 use crate::shared::BIAS_ROUNDING;
 use crate::shot::Shot;
 use crate::technique::Settings;
@@ -51,6 +51,9 @@ fn notes(
 
 /// Where a light shines to, for people.
 pub fn shines_along(planned: &LightPlan) -> String {
+    if planned.light.spread == Spread::Sphere as u32 {
+        return "it shines to all sides".into();
+    }
     let [x, y, z] = planned.light.n;
     format!("it shines along ({x:.3}, {y:.3}, {z:.3})")
 }
@@ -108,6 +111,9 @@ fn touches(planned: &LightPlan, placed: &Placed, found: &[LightCoverage]) -> Opt
 }
 
 fn is_far(planned: &LightPlan, shot: &Shot, placed: &Placed) -> Option<String> {
+    if placed.light.spread() == Spread::Sun {
+        return None;
+    }
     let camera = &shot.camera;
     let away = placed.light.center.distance(camera.target);
     let lost = ROUNDINGS * f64::from(BIAS_ROUNDING) * away;
@@ -132,9 +138,13 @@ fn loses_shares(
     if !sums || planned.lighting != Lighting::Shadowed {
         return None;
     }
-    let placed = survey::Placed::new(light, shot.origin(), shot.touch(light));
-    let occluders = Occluders::new(shot, &placed, &found[0])?;
-    let (width, height) = light.half_size();
+    let sides = light.sides(&Ball::around(shot.scene.bounds()));
+    let occluders = sides.iter().zip(found).filter_map(|(side, found)| {
+        let placed = survey::Placed::new(side, shot.origin(), shot.touch(light));
+        Occluders::new(shot, &placed, found)
+    });
+    let occluders = occluders.min_by(|a, b| a.nearest.total_cmp(&b.nearest))?;
+    let (width, height) = sides[0].light.half_size();
     let size = 2.0 * DVec2::new(width, height) / f64::from(settings.split);
     let least = occluders.least_distance(settings, size);
     let (name, nearest, format) = (&planned.name, occluders.nearest, settings.accumulate);

@@ -4,7 +4,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{AreaLight, LightShape};
+use crate::scene::{Cone, Side, mapped};
 use crate::shared::{CORNER_ROUNDING, PLANE_ROUNDING};
 use crate::shot::Shot;
 use crate::sub_light::Part;
@@ -59,25 +59,41 @@ pub struct Placed {
     axes: [DVec3; 3],
     half: DVec2,
     round: bool,
+    /// See [`Side::parallel`].
+    parallel: f64,
     /// [scene units] Height up to which surfaces are the lamp's own.
     pub touch: f64,
 }
 
 impl Placed {
-    pub fn new(light: &AreaLight, origin: DVec3, touch: f64) -> Self {
+    pub fn new(side: &Side, origin: DVec3, touch: f64) -> Self {
+        let light = &side.light;
         let (u, v, n) = light.frame();
         Self {
             center: light.center - origin,
             touch,
             axes: [u, v, n],
             half: light.half_size().into(),
-            round: matches!(light.shape, LightShape::Disc { .. }),
+            round: light.is_round(),
+            parallel: side.parallel,
         }
     }
 
     pub fn to_light(&self, point: DVec3) -> DVec3 {
         let way = point - self.center;
+        let way = match self.parallel {
+            0.0 => way,
+            length => mapped(way, self.axes[2], length),
+        };
         DVec3::from(self.axes.map(|axis| axis.dot(way)))
+    }
+
+    /// The way from a point to the light's centre, in the unit of its half sizes.
+    fn way_from(&self, point: DVec3) -> DVec3 {
+        match self.parallel {
+            0.0 => self.center - point,
+            length => -self.axes[2] * length,
+        }
     }
 
     /// Whether a triangle in the light's frame is before the light, within what counts as in its plane.
@@ -99,16 +115,17 @@ impl Placed {
     }
 }
 
-/// `parts`: of the light; `touch`: see [`Shot::touch`].
+/// `side`: of the light; `parts`: of it; `touch`: see [`Shot::touch`].
 pub fn survey(
     shot: &Shot,
     frustum: &Frustum,
-    light: &AreaLight,
+    side: &Side,
     parts: &[Part],
     touch: f64,
 ) -> LightCoverage {
     let (scene, origin) = (&*shot.scene, shot.origin());
-    let placed = Placed::new(light, origin, touch);
+    let placed = Placed::new(side, origin, touch);
+    let cone = side.cone.map(|cone| Cone::new(cone as usize).distances());
     let mut found = LightCoverage {
         receivers: false,
         receiver_bounds: (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -124,6 +141,14 @@ pub fn survey(
         let double_sided = scene.material_of(index).double_sided;
         if polygon.is_empty() || !may_face(&placed, corners, double_sided) {
             continue;
+        }
+        // Inside a sphere nothing is shadowed; what is in it with its corners is in it altogether.
+        let outside = |point: &DVec3| point.distance(placed.center) > placed.half.x;
+        if cone.is_some() && !polygon.iter().any(outside) {
+            polygon.clear();
+        }
+        for plane in cone.iter().flatten() {
+            clip(&mut polygon, |point| plane.dot(point - placed.center));
         }
         polygon
             .iter_mut()
@@ -171,7 +196,7 @@ fn may_face(light: &Placed, corners: [DVec3; 3], double_sided: bool) -> bool {
         return false;
     }
     edge_on
-        || visible.dot(light.center - corners[0]) + light.reach(in_light)
+        || visible.dot(light.way_from(corners[0])) + light.reach(in_light)
             > -ROUNDING * normal.length() * magnitude
 }
 

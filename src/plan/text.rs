@@ -4,6 +4,7 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::{LightPlan, Lighting, Plan, ViewSet};
 use crate::frame::Domain;
+use crate::scene::Spread;
 use crate::technique::Mapping;
 
 const LEVELS: &str = "hierarchy levels";
@@ -65,6 +66,12 @@ impl Plan {
     fn write_light(&self, out: &mut Formatter, light: &LightPlan) -> Result {
         let [half_u, half_v] = light.light.half_size;
         let shape = match (half_u == 0.0 && half_v == 0.0, light.light.round != 0) {
+            _ if light.light.spread == Spread::Sun as u32 => {
+                format!("sun of {:.3} degrees", 2.0 * half_u.atan().to_degrees())
+            }
+            _ if light.light.spread == Spread::Sphere as u32 => {
+                format!("sphere of radius {half_u:.3}")
+            }
             (true, _) => "point".to_owned(),
             (_, true) => format!("disc of radius {half_u:.3}"),
             _ => format!("rectangle of {:.3} x {:.3}", 2.0 * half_u, 2.0 * half_v),

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::scene::{AreaLight, LightShape};
-use crate::shared::{self, View};
+use crate::scene::{AreaLight, Ball, Spread};
+use crate::shared::{self, ALL_CONES, View};
 use crate::shot::Shot;
 use crate::sub_light::Part;
 
@@ -23,6 +23,8 @@ pub struct MapParams {
     pub touch: f64,
     /// [level] Of the hierarchy that there is memory for.
     pub levels: u32,
+    /// Around the scene.
+    pub ball: Ball,
 }
 
 /// Which part of a light a view looks from, and in which direction.
@@ -31,8 +33,8 @@ pub struct ViewPose {
     pub part: Part,
     /// 0 = front; 1, 2 = along ±u; 3, 4 = along ±v.
     pub face: usize,
-    /// Whether it looks behind the plane of a light that shines to all sides.
-    pub turned: bool,
+    /// The light's side that it looks from ([`AreaLight::side`]).
+    pub side: usize,
     /// Tangent up to which the front face holds receivers; the largest there is where the light has no side faces.
     pub reach: f32,
 }
@@ -46,11 +48,8 @@ impl ViewPose {
 
     /// The view where the light stands. Does not allocate.
     pub fn view(&self, params: &MapParams, light: &AreaLight, sector_first: u32) -> View {
-        let part = self.part.of(light);
-        let (u, v, n) = match self.turned {
-            true => light.turned().frame(),
-            false => light.frame(),
-        };
+        let side = light.side(self.side, &params.ball);
+        let (part, (u, v, n)) = (self.part.of(&side.light), side.light.frame());
         // right × up = forward.
         let [right, up, forward] = match self.face {
             0 => [u, v, n],
@@ -64,7 +63,15 @@ impl ViewPose {
             [center.x as f32, center.y as f32, radius as f32]
         });
         let (half, (lower, upper)) = (part.half_size, part.extent);
-        let center = part.center - params.origin;
+        // The sun's parts differ in their rays' directions.
+        let (center, ray) = match side.parallel {
+            0.0 => (part.center, n),
+            length => {
+                let middle = side.light.center;
+                (middle, n - (part.center - middle) / length)
+            }
+        };
+        let center = center - params.origin;
         View {
             center: array(center),
             center_residual: array(center - center.as_vec3().as_dvec3()),
@@ -91,6 +98,13 @@ impl ViewPose {
             map_size: params.map,
             bias: params.bias,
             levels_max: params.levels.max(1),
+            parallel: side.parallel as f32,
+            ray: array(ray),
+            sphere: (light.center - params.origin)
+                .extend(light.half_size().0)
+                .as_vec4()
+                .into(),
+            cone: side.cone.map_or(ALL_CONES, |cone| cone + 1),
         }
     }
 }
@@ -111,9 +125,9 @@ pub fn whole_light(
         v: v.as_vec3().into(),
         n: n.as_vec3().into(),
         half_size: [half.0 as f32, half.1 as f32],
-        round: u32::from(matches!(light.shape, LightShape::Disc { .. })),
+        round: u32::from(light.is_round()),
         weight_sum,
-        all_sides: u32::from(light.is_point_without_direction()),
+        spread: light.spread() as u32,
         intensity,
         view_first: views.start,
         view_count: views.len() as u32,
@@ -127,23 +141,36 @@ pub fn weight_sum<'a>(parts: impl Iterator<Item = &'a Part>) -> f32 {
     weights.fold(0.0, |sum, weight| sum + weight)
 }
 
-/// [radiance · scene units²] Linear RGB radiance times area; for a light without extent its radiant intensity, straight ahead
-/// if it has a direction. Unless it is given, such that a white surface at the camera's target that faces the light's centre
+/// [radiance · scene units²] Linear RGB radiance times area, which for a sun is that of a disc of its angular radius at distance 1;
+/// for a light without extent its radiant intensity, straight ahead if it has a direction. Unless it is given, such that a white surface at the camera's target that faces the light's centre
 /// has radiance 1 from that light, as long as the light is small against its distance; at least a radiance of 1.
 pub fn intensity(shot: &Shot, light: &AreaLight) -> [f32; 3] {
+    if light.spread() == Spread::Sun {
+        return sun_intensity(light);
+    }
     let area = light.area();
     let way = shot.camera.target - light.center;
     let (_, _, normal) = light.frame();
-    let cosine = if light.is_point_without_direction() {
-        1.0
-    } else {
-        normal.dot(way.normalize_or(normal)).abs().max(0.1)
+    let cosine = match light.spread() {
+        Spread::Plane => normal.dot(way.normalize_or(normal)).abs().max(0.1),
+        _ => 1.0,
     };
     let intensity = match light.intensity.map(f64::from) {
         None => area.max(PI * way.length_squared() / cosine),
         Some(intensity) if light.is_point() => intensity,
         Some(radiance) => radiance * area,
     };
+    colored(light, intensity)
+}
+
+fn sun_intensity(light: &AreaLight) -> [f32; 3] {
+    // A surface that faces a sun of radiance L has irradiance π sin² · L, where its radiance times area is π tan² · L.
+    let (tangent, _) = light.half_size();
+    let irradiance = light.intensity.map_or(PI, f64::from);
+    colored(light, irradiance * (1.0 + tangent * tangent))
+}
+
+fn colored(light: &AreaLight, intensity: f64) -> [f32; 3] {
     let channel = |color: f32| (f64::from(color) * intensity).min(f64::from(f32::MAX)) as f32;
     light.color.to_array().map(channel)
 }

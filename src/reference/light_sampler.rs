@@ -4,26 +4,33 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::DVec3;
 
-use crate::scene::{AreaLight, LightShape};
+use crate::scene::{AreaLight, Ball, LightShape, Spread};
 use crate::shared::HORIZON_ROUNDING;
 use crate::{Error, Result};
 
 /// A light that can be sampled, relative to the eye.
 pub struct Emitter {
     center: DVec3,
+    spread: Spread,
     /// Half-axis vectors; for a disc two perpendicular radii.
     axes: [DVec3; 2],
     /// The side it shines to; None where the shape has no plane (a point, a line): to all sides.
     normal: Option<DVec3>,
     disc: bool,
+    /// Around the scene, relative to the eye.
+    ball: Ball,
 }
 
 impl Emitter {
+    /// `ball`: around the scene.
+    ///
     /// # Errors
     /// When the light has numbers that are not finite, or a disc with extent no normal.
-    pub fn new(light: &AreaLight, origin: DVec3) -> Result<Self> {
-        let (axes, normal, disc) = match light.shape {
-            LightShape::Rect { u, v } => ([u, v], u.cross(v).try_normalize(), false),
+    pub fn new(light: &AreaLight, ball: Ball, origin: DVec3) -> Result<Self> {
+        let (u, v, n) = light.frame();
+        let (half_u, half_v) = light.half_size();
+        let (axes, normal) = match light.shape {
+            LightShape::Rect { u, v } => ([u, v], u.cross(v).try_normalize()),
             LightShape::Disc { normal, radius } => {
                 let direction = normal.try_normalize();
                 if radius > 0.0 && direction.is_none() {
@@ -32,9 +39,10 @@ impl Emitter {
                         light.name
                     )));
                 }
-                let (a, b, _) = light.frame();
-                ([a * radius, b * radius], direction, true)
+                ([u * radius, v * radius], direction)
             }
+            LightShape::Sphere { .. } => ([u * half_u, v * half_v], None),
+            LightShape::Sun { .. } => ([u * half_u, v * half_v], Some(n)),
         };
         let center = light.center - origin;
         if ![center, axes[0], axes[1]].iter().all(|v| v.is_finite()) {
@@ -45,10 +53,43 @@ impl Emitter {
         }
         Ok(Self {
             center,
+            spread: light.spread(),
             axes,
             normal,
-            disc,
+            disc: light.is_round(),
+            ball: Ball {
+                center: ball.center - origin,
+                ..ball
+            },
         })
+    }
+
+    /// The flat light that a point sees of it; None inside a sphere, where all of it is seen.
+    pub fn seen_from(&self, point: DVec3) -> Option<Self> {
+        match self.spread {
+            Spread::Plane | Spread::Point => Some(Self { ..*self }),
+            Spread::Sun => {
+                // Beyond everything that may stand before it.
+                let away = point.distance(self.ball.center) + self.ball.radius;
+                let normal = self.normal?;
+                Some(Self {
+                    center: point - normal * (2.0 * away),
+                    axes: self.axes.map(|axis| axis * (2.0 * away)),
+                    ..*self
+                })
+            }
+            Spread::Sphere => {
+                let (toward, distance) = (point - self.center).normalize_and_length();
+                let radius = self.axes[0].length();
+                let seen = (distance * distance - radius * radius).sqrt();
+                let (u, v) = toward.any_orthonormal_pair();
+                (distance > radius).then(|| Self {
+                    axes: [u, v].map(|axis| axis * (radius * distance / seen)),
+                    normal: Some(toward),
+                    ..*self
+                })
+            }
+        }
     }
 
     /// Whether it has no extent, so that all samples are the same.
@@ -157,6 +198,11 @@ fn square_share(height: f64, a: f64, b: f64) -> f64 {
 mod tests {
     use super::*;
 
+    const BALL: Ball = Ball {
+        center: DVec3::ZERO,
+        radius: 1.0,
+    };
+
     #[test]
     fn shares_by_hand() {
         assert_eq!(square_share(1.0, 0.0, 0.0), 1.0);
@@ -185,12 +231,12 @@ mod tests {
             intensity: None,
         };
         let sides = |normal| {
-            let emitter = Emitter::new(&point(normal, 0.0), DVec3::ZERO).expect("a light");
+            let emitter = Emitter::new(&point(normal, 0.0), BALL, DVec3::ZERO).expect("a light");
             [DVec3::Y, DVec3::NEG_Y].map(|place| emitter.share_in_front(place, -place))
         };
         assert_eq!(sides(DVec3::ZERO), [1.0, 1.0]);
         assert_eq!(sides(DVec3::NEG_Y), [0.0, 1.0]);
-        assert!(Emitter::new(&point(DVec3::ZERO, 1.0), DVec3::ZERO).is_err());
+        assert!(Emitter::new(&point(DVec3::ZERO, 1.0), BALL, DVec3::ZERO).is_err());
     }
 
     #[test]

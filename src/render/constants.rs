@@ -3,6 +3,7 @@
 use crate::frame::{Casters, Front, Pass};
 use crate::gpu::Constants;
 use crate::plan::{LightPlan, Plan, ViewPlan, ViewSet};
+use crate::shared::ALL_CONES;
 
 /// What all passes of a frame have in common.
 pub fn of_frame(plan: &Plan) -> Constants {
@@ -29,6 +30,8 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
     constants.extend([
         ("DISC_LIGHT", u32::from(view.is_round())),
         ("OBLIQUE", view.oblique.into()),
+        ("PARALLEL", (view.view.parallel > 0.0).into()),
+        ("CONES", (view.view.cone != ALL_CONES).into()),
         ("ACCUMULATE", light.accumulates().into()),
         ("LAYERS", set.recipe.layers.max(1)),
     ]);

@@ -1,44 +1,130 @@
-//! Geometry of area lights.
+//! Geometry of area lights: what all shapes have in common. A shape's own file says the rest.
+
+mod disc;
+mod rect;
+mod sphere;
+mod sun;
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{AreaLight, LightShape, MAX_COORDINATE};
-use crate::{Error, Result};
+pub use sphere::Cone;
+pub use sun::{ANGLE_DEG as SUN_ANGLE_DEG, Ball, mapped};
 
-/// The largest |cos| between the half-axes of a rectangle.
-const PERPENDICULAR_TOLERANCE: f64 = 1e-4;
+use super::{AreaLight, LightShape, MAX_COORDINATE};
+use crate::shared::{SPREAD_PLANE, SPREAD_POINT, SPREAD_SPHERE, SPREAD_SUN};
+use crate::{Error, Result};
 
 /// [share of a light's size] Height over its plane up to which a surface is the lamp's own.
 const TOUCH: f64 = 1e-7;
 
+/// A shape, as whatever works with lights sees it: a rectangle or a disc in a plane.
+#[derive(Debug, Clone, Copy)]
+struct Form {
+    /// See [`AreaLight::frame`].
+    frame: (DVec3, DVec3, DVec3),
+    /// See [`AreaLight::half_size`].
+    half_size: (f64, f64),
+    round: bool,
+    spread: Spread,
+}
+
+/// Where a light shines from and to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Spread {
+    /// From its plane to one side.
+    Plane = SPREAD_PLANE,
+    /// From a point to all sides alike.
+    Point = SPREAD_POINT,
+    /// From infinity; its disc is that of directions.
+    Sun = SPREAD_SUN,
+    /// To all sides; each receiver sees a disc that faces it.
+    Sphere = SPREAD_SPHERE,
+}
+
+/// A light as some of its receivers see it: a flat one with maps of its own.
+#[derive(Debug, Clone)]
+pub struct Side {
+    pub light: AreaLight,
+    /// [scene units] Not 0: the light is where the sun's map has taken it, with this L (see `sun.rs`); its centre is a point of the
+    /// plane.
+    pub parallel: f64,
+    /// Its receivers are those in this cone, seen from the light's centre.
+    pub cone: Option<u32>,
+}
+
+impl From<AreaLight> for Side {
+    fn from(light: AreaLight) -> Self {
+        Self {
+            light,
+            parallel: 0.0,
+            cone: None,
+        }
+    }
+}
+
+fn some_frame(normal: DVec3) -> (DVec3, DVec3, DVec3) {
+    let (u, v) = normal.any_orthonormal_pair();
+    (u, v, normal)
+}
+
+// Written so that NaN fails it.
+fn is_sane(v: DVec3) -> bool {
+    v.is_finite() && v.abs().max_element() <= MAX_COORDINATE
+}
+
+fn radius_fault(radius: f64) -> Option<&'static str> {
+    let sane = (0.0..=MAX_COORDINATE).contains(&radius);
+    (!sane).then_some("its radius must be from 0 to 1e18")
+}
+
 impl AreaLight {
-    /// Unit vectors (u, v, normal) with normal = u × v the direction in which the light shines. A
-    /// rectangle's u lies along its own; a disc's is arbitrary, but the same in every run. A point
-    /// light without direction gets some frame.
-    pub fn frame(&self) -> (DVec3, DVec3, DVec3) {
-        let some_frame = |normal: DVec3| {
-            let (u, v) = normal.any_orthonormal_pair();
-            (u, v, normal)
-        };
+    fn form(&self) -> Form {
         match self.shape {
-            LightShape::Rect { u, v } => match (u.try_normalize(), u.cross(v).try_normalize()) {
-                (Some(u), Some(normal)) => (u, normal.cross(u), normal),
-                _ => some_frame(DVec3::NEG_Y),
-            },
-            LightShape::Disc { normal, .. } => {
-                some_frame(normal.try_normalize().unwrap_or(DVec3::NEG_Y))
-            }
+            LightShape::Rect { u, v } => rect::form(u, v),
+            LightShape::Disc { normal, radius } => disc::form(normal, radius),
+            LightShape::Sphere { radius } => sphere::form(radius),
+            LightShape::Sun {
+                direction,
+                angle_deg,
+            } => sun::form(direction, angle_deg),
         }
     }
 
-    /// [scene units] How far the light reaches from its centre along the u and v of [`Self::frame`].
-    pub fn half_size(&self) -> (f64, f64) {
+    fn fault_of_shape(&self) -> Option<&'static str> {
         match self.shape {
-            LightShape::Rect { u, v } => (u.length(), v.length()),
-            LightShape::Disc { radius, .. } => (radius, radius),
+            LightShape::Rect { u, v } => rect::fault(u, v),
+            LightShape::Disc { normal, radius } => disc::fault(normal, radius),
+            LightShape::Sphere { radius } => sphere::fault(radius),
+            LightShape::Sun {
+                direction,
+                angle_deg,
+            } => sun::fault(direction, angle_deg),
         }
+    }
+
+    /// Unit vectors (u, v, normal) with normal = u × v the direction in which the light shines. A
+    /// rectangle's u lies along its own; a disc's is arbitrary, but the same in every run. A light
+    /// without direction gets some frame.
+    pub fn frame(&self) -> (DVec3, DVec3, DVec3) {
+        self.form().frame
+    }
+
+    /// [scene units] How far the light reaches from its centre along the u and v of [`Self::frame`]; of a sun the tangent of its
+    /// angular radius.
+    pub fn half_size(&self) -> (f64, f64) {
+        self.form().half_size
+    }
+
+    /// Whether it is a disc, or is seen as one.
+    pub fn is_round(&self) -> bool {
+        self.form().round
+    }
+
+    pub fn spread(&self) -> Spread {
+        self.form().spread
     }
 
     /// Whether the light has no extent; its shadow is hard.
@@ -46,9 +132,12 @@ impl AreaLight {
         self.half_size() == (0.0, 0.0)
     }
 
-    /// [scene units] Surfaces no higher over the light's plane touch it, where coordinates are as large as `magnitude`
+    /// [scene units] 0 for a sun. Surfaces no higher over the light's plane touch it, where coordinates are as large as `magnitude`
     /// \[scene units\]: 1e-7 of its size, or half a unit in the last place of such coordinates.
     pub fn touch(&self, magnitude: f64) -> f64 {
+        if self.spread() == Spread::Sun {
+            return 0.0;
+        }
         let (u, v) = self.half_size();
         (TOUCH * 2.0 * u.max(v)).max(0.5 * f64::from(f32::EPSILON) * magnitude)
     }
@@ -56,38 +145,65 @@ impl AreaLight {
     /// Whether the light is a point without direction, which shines to all sides alike. A disc of radius 0 with a
     /// normal has a direction: it is the limit of small discs, and shines by the cosine.
     pub fn is_point_without_direction(&self) -> bool {
-        let directed = match self.shape {
-            LightShape::Rect { .. } => false,
-            LightShape::Disc { normal, .. } => normal.try_normalize().is_some(),
-        };
-        self.is_point() && !directed
+        self.spread() == Spread::Point
     }
 
-    /// The light as it shines to each side of a plane: itself, and turned round where it shines to all sides.
-    pub fn sides(&self) -> Vec<Self> {
-        let mut sides = vec![self.clone()];
-        if self.is_point_without_direction() {
-            sides.push(self.turned());
+    /// Of how many flat lights the maps are.
+    pub fn side_count(&self) -> usize {
+        match self.spread() {
+            Spread::Plane | Spread::Sun => 1,
+            Spread::Point => 2,
+            Spread::Sphere => Cone::COUNT,
         }
-        sides
     }
 
-    /// A disc that shines to the other side.
-    pub fn turned(&self) -> Self {
-        let mut turned = self.clone();
-        let (_, _, forward) = self.frame();
-        if let LightShape::Disc { normal, .. } = &mut turned.shape {
-            *normal = -forward;
+    /// The flat light that is seen from a side. `ball`: around the scene; only suns ask for it.
+    pub fn side(&self, index: usize, ball: &Ball) -> Side {
+        let (_, _, normal) = self.frame();
+        let (radius, _) = self.half_size();
+        match self.spread() {
+            Spread::Plane => self.flat(self.shape).into(),
+            Spread::Point => self.disc([normal, -normal][index.min(1)], radius).into(),
+            Spread::Sphere => Side {
+                cone: Some(index as u32),
+                ..self.disc(Cone::new(index).middle(), radius).into()
+            },
+            Spread::Sun => {
+                let mut light = self.disc(normal, radius * ball.length());
+                light.center = ball.on_plane(normal);
+                Side {
+                    parallel: ball.length(),
+                    ..light.into()
+                }
+            }
         }
-        turned
+    }
+
+    pub fn sides(&self, ball: &Ball) -> Vec<Side> {
+        (0..self.side_count())
+            .map(|index| self.side(index, ball))
+            .collect()
+    }
+
+    fn disc(&self, normal: DVec3, radius: f64) -> Self {
+        self.flat(LightShape::Disc { normal, radius })
+    }
+
+    /// Does not allocate.
+    fn flat(&self, shape: LightShape) -> Self {
+        Self {
+            name: String::new(),
+            shape,
+            ..*self
+        }
     }
 
     /// [scene units²]
     pub fn area(&self) -> f64 {
         let (u, v) = self.half_size();
-        match self.shape {
-            LightShape::Rect { .. } => 4.0 * u * v,
-            LightShape::Disc { .. } => PI * u * v,
+        match self.is_round() {
+            false => 4.0 * u * v,
+            true => PI * u * v,
         }
     }
 
@@ -106,9 +222,7 @@ impl AreaLight {
     }
 
     fn fault(&self) -> Option<&'static str> {
-        // Written so that NaN fails them.
-        let sane = |v: DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
-        if !sane(self.center) {
+        if !is_sane(self.center) {
             return Some("its center is not finite or beyond 1e18");
         }
         if !(self.color.is_finite() && self.color.min_element() >= 0.0) {
@@ -117,33 +231,6 @@ impl AreaLight {
         if !self.intensity.is_none_or(|i| i.is_finite() && i >= 0.0) {
             return Some("its intensity must be finite and not negative");
         }
-        match self.shape {
-            LightShape::Rect { u, v } if !sane(u) || !sane(v) => {
-                Some("its u or v is not finite or beyond 1e18")
-            }
-            LightShape::Rect { u, v } => {
-                let (u_length, v_length) = (u.length(), v.length());
-                if (u_length == 0.0) != (v_length == 0.0) {
-                    Some(
-                        "one of u and v is zero, which makes it a line; give both an extent, or none",
-                    )
-                } else if u.dot(v).abs() > PERPENDICULAR_TOLERANCE * u_length * v_length {
-                    Some("its u and v are not perpendicular")
-                } else {
-                    None
-                }
-            }
-            LightShape::Disc { normal, radius } => {
-                if !(0.0..=MAX_COORDINATE).contains(&radius) {
-                    Some("its radius must be from 0 to 1e18")
-                } else if !sane(normal) {
-                    Some("its normal is not finite or beyond 1e18")
-                } else if radius > 0.0 && normal.try_normalize().is_none() {
-                    Some("its normal has no length")
-                } else {
-                    None
-                }
-            }
-        }
+        self.fault_of_shape()
     }
 }

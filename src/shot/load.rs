@@ -9,7 +9,7 @@ use serde::de::IgnoredAny;
 
 use super::{MAX_SIZE, Settings, Shot};
 use crate::scene::gltf::{self, Blend, Limits, LoadOptions};
-use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, Scene, file};
+use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, SUN_ANGLE_DEG, Scene, file};
 use crate::{Error, Result};
 
 /// [pixel] Height (and without an aspect ratio, width) of an image for which nobody states a size.
@@ -65,17 +65,22 @@ struct CameraFile {
 enum LightKind {
     Rect,
     Disc,
+    Sphere,
+    Sun,
 }
 
 #[derive(Deserialize)]
 struct LightFile {
     #[serde(rename = "type")]
     kind: LightKind,
-    center: [f64; 3],
+    /// Of all but suns.
+    center: Option<[f64; 3]>,
     u: Option<[f64; 3]>,
     v: Option<[f64; 3]>,
     normal: Option<[f64; 3]>,
     radius: Option<f64>,
+    direction: Option<[f64; 3]>,
+    angle_deg: Option<f64>,
     #[serde(default = "white")]
     color: [f32; 3],
     intensity: Option<f32>,
@@ -373,6 +378,10 @@ impl CameraFile {
 impl LightFile {
     fn into_light(self, index: usize) -> Result<AreaLight, String> {
         let missing = |key| format!("light {index} lacks {key:?}");
+        let center = match self.kind {
+            LightKind::Sun => [0.0; 3],
+            _ => self.center.ok_or_else(|| missing("center"))?,
+        };
         let shape = match self.kind {
             LightKind::Rect => LightShape::Rect {
                 u: self.u.ok_or_else(|| missing("u"))?.into(),
@@ -390,10 +399,17 @@ impl LightFile {
                     radius,
                 }
             }
+            LightKind::Sphere => LightShape::Sphere {
+                radius: self.radius.ok_or_else(|| missing("radius"))?,
+            },
+            LightKind::Sun => LightShape::Sun {
+                direction: self.direction.ok_or_else(|| missing("direction"))?.into(),
+                angle_deg: self.angle_deg.unwrap_or(SUN_ANGLE_DEG),
+            },
         };
         Ok(AreaLight {
             name: format!("light {index}"),
-            center: self.center.into(),
+            center: center.into(),
             shape,
             color: Vec3::from(self.color),
             intensity: self.intensity,

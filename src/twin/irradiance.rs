@@ -4,7 +4,8 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use crate::shared::{ARCTANGENT, IRRADIANCE_NODES, Light};
+use super::facing::Facing;
+use crate::shared::{ARCTANGENT, IRRADIANCE_NODES, Light, SPREAD_POINT};
 
 /// [scale] Shorter lengths are taken for it.
 const SHORTEST: f32 = 1e-9;
@@ -25,8 +26,9 @@ struct SeenLight {
 ///
 /// Relative error: below 1e-3 where the shader states it. Finite everywhere.
 pub fn irradiance(light: &Light, position: Vec3, normal: Vec3) -> f32 {
-    let way = Vec3::from(light.center) - position;
-    if light.all_sides != 0 {
+    let facing = Facing::new(light, position, normal);
+    let (light, way) = (&facing.light, facing.way);
+    if light.spread == SPREAD_POINT {
         let square = way.length_squared().max(1e-36);
         return way.dot(normal).max(0.0) / (square * square.sqrt());
     }
@@ -37,7 +39,7 @@ pub fn irradiance(light: &Light, position: Vec3, normal: Vec3) -> f32 {
         seen.distance = seen.distance.max(SHORTEST);
         let shape = if seen.disc { PI } else { 4.0 };
         let area = shape * seen.half_size.x * seen.half_size.y;
-        (seen.irradiance() / area * inverse_scale * inverse_scale).min(1e38)
+        (seen.irradiance() / area * inverse_scale * inverse_scale * facing.area).min(1e38)
     } else {
         0.0
     }

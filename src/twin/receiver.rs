@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::shared::{BIAS_ROUNDING, BIAS_SLOPE_MAX, Fit, PLANE_MAX, View};
+use crate::shared::{ALL_CONES, BIAS_ROUNDING, BIAS_SLOPE_MAX, CONE_SPLIT, Fit, PLANE_MAX, View};
 
 /// Where a receiver falls on a view's map, how deep, and its back-projection to the light:
 /// q = (ku · Δt, kv · Δt) / (Δd + b · Δt), with Δt = t − t_p and Δd = d − d_p.
@@ -100,6 +100,48 @@ fn to_face(view: &View, world: Vec3) -> Vec3 {
     )
 }
 
+/// Where the view sees a point: mirror of `lib/parallel.glsl`.
+fn mapped(view: &View, to_point: Vec3) -> Vec3 {
+    if view.parallel == 0.0 {
+        return to_point;
+    }
+    let (n, height) = (Vec3::from(view.light_n), height_of(view, to_point));
+    (to_point + Vec3::from(view.ray) * height + n * view.parallel) * (view.parallel / height)
+}
+
+fn height_of(view: &View, to_point: Vec3) -> f32 {
+    -to_point.dot(view.light_n.into())
+}
+
+fn mapped_normal(view: &View, to_point: Vec3, normal: Vec3) -> Vec3 {
+    if view.parallel == 0.0 {
+        return normal;
+    }
+    let n = Vec3::from(view.light_n);
+    normal - n * normal.dot(n) - n * (normal.dot(to_point) / view.parallel)
+}
+
+/// Mirror of `lib/cone.glsl`.
+fn cone_of([x, y, z, radius]: [f32; 4], position: Vec3) -> u32 {
+    let way = position - Vec3::new(x, y, z);
+    if way.length_squared() <= radius * radius {
+        return ALL_CONES;
+    }
+    let size = way.abs();
+    let (axis, turned) = if size.x >= size.y.max(size.z) {
+        (0, way)
+    } else if size.y >= size.z {
+        (1, Vec3::new(way.y, way.z, way.x))
+    } else {
+        (2, Vec3::new(way.z, way.x, way.y))
+    };
+    let share = 0.5 * (Vec2::new(turned.y, turned.z) / turned.x.abs().max(1e-30)) + 0.5;
+    let split = CONE_SPLIT as f32;
+    let cell = (share * split).clamp(Vec2::ZERO, Vec2::splat(split - 1.0));
+    let side = 2 * axis + u32::from(turned.x < 0.0);
+    1 + (side * CONE_SPLIT + cell.y as u32) * CONE_SPLIT + cell.x as u32
+}
+
 /// Half extents of a view's box: towards −, towards +.
 pub(super) fn extents(view: &View) -> (Vec2, Vec2) {
     let [x0, y0, x1, y1] = view.extent;
@@ -120,10 +162,15 @@ fn face_of(in_light: Vec3, reach: f32) -> u32 {
 }
 
 /// Whether the view has to look at a surface point: it lies in front of the light, belongs to the view's
-/// face, and at least a part of the sub-light is in front of it.
+/// face and cone, and at least a part of the sub-light is in front of it.
 ///
-/// `to_point`: from the sub-light's centre; `normal`: of the visible side.
-pub fn in_view(view: &View, to_point: Vec3, normal: Vec3) -> bool {
+/// `position`: relative to the eye; `normal`: of the visible side.
+pub fn in_view(view: &View, position: Vec3, normal: Vec3) -> bool {
+    if view.cone != ALL_CONES && cone_of(view.sphere, position) != view.cone {
+        return false;
+    }
+    let way = position - Vec3::from(view.center);
+    let (to_point, normal) = (mapped(view, way), mapped_normal(view, way, normal));
     let half = Vec2::from(view.half_size);
     let in_plane = |vector: Vec3| {
         Vec2::new(
@@ -147,7 +194,7 @@ pub fn in_view(view: &View, to_point: Vec3, normal: Vec3) -> bool {
 /// light.
 pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Vec3) -> Receiver {
     let focal = Vec2::from(fit.focal);
-    let p = to_face(view, to_point);
+    let p = to_face(view, mapped(view, to_point));
     let inverse_z = 1.0 / p.z;
     let mut t = focal * (p.truncate() * inverse_z) + Vec2::from(fit.center);
     if (2.0 * t.x).fract() == 0.0 {
@@ -155,7 +202,7 @@ pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Ve
     }
     let d = fit.near * inverse_z;
 
-    let n = to_face(view, normal);
+    let n = to_face(view, mapped_normal(view, to_point, normal));
     let height = n.dot(p);
     let slope = n.truncate().abs() * fit.near / (focal * height.abs().max(1e-30));
     let behind = height >= 0.0;
@@ -166,8 +213,11 @@ pub fn project(view: &View, fit: &Fit, oblique: bool, to_point: Vec3, normal: Ve
     let plane = n.truncate() * fit.near / (focal * away);
     let slope_bias = ((slope.x + slope.y) * view.bias).min(BIAS_SLOPE_MAX * d);
     let magnitude = to_point.abs() + Vec3::from(view.center).abs();
-    let rounding =
-        BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * inverse_z);
+    let nearness = match view.parallel {
+        0.0 => inverse_z,
+        _ => 1.0 / height_of(view, to_point),
+    };
+    let rounding = BIAS_ROUNDING * d * (1.0 + (magnitude.x + magnitude.y + magnitude.z) * nearness);
     let half = Vec2::from(view.half_size);
     let mut receiver = Receiver {
         t,

@@ -2,13 +2,18 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::shared::{HORIZON_ROUNDING, Light};
+use super::facing::Facing;
+use crate::shared::{HORIZON_ROUNDING, Light, SPREAD_POINT};
 
 /// 0 umbra … 1 lit; 0 where the surface faces away from the whole light or lies behind it.
 ///
 /// `hidden`: sum over the light's views of what they hide, each weighed by its `weight`.
 pub fn visibility(light: &Light, position: Vec3, normal: Vec3, hidden: f64) -> f64 {
-    if !faces_light(light, position, normal) {
+    let facing = Facing::new(light, position, normal);
+    if facing.inside {
+        return 1.0;
+    }
+    if !faces_light(&facing, normal) {
         return 0.0;
     }
     if light.view_count == 0 {
@@ -19,8 +24,8 @@ pub fn visibility(light: &Light, position: Vec3, normal: Vec3, hidden: f64) -> f
 
 /// Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding: a
 /// decision, taken in f32 as the shader takes it.
-fn faces_light(light: &Light, position: Vec3, normal: Vec3) -> bool {
-    let to_point = position - Vec3::from(light.center);
+fn faces_light(facing: &Facing, normal: Vec3) -> bool {
+    let (light, to_point, magnitude) = (&facing.light, -facing.way, facing.magnitude);
     let along = Vec2::new(normal.dot(light.u.into()), normal.dot(light.v.into())).abs()
         * Vec2::from(light.half_size);
     let reach = if light.round != 0 {
@@ -28,8 +33,7 @@ fn faces_light(light: &Light, position: Vec3, normal: Vec3) -> bool {
     } else {
         along.x + along.y
     };
-    let magnitude = to_point.abs() + Vec3::from(light.center).abs();
     let rounding = HORIZON_ROUNDING * (magnitude.x + magnitude.y + magnitude.z);
-    let in_front = light.all_sides != 0 || to_point.dot(light.n.into()) > rounding;
+    let in_front = light.spread == SPREAD_POINT || to_point.dot(light.n.into()) > rounding;
     in_front && reach - normal.dot(to_point) > rounding
 }

@@ -188,7 +188,7 @@ fn the_limit_is_a_point() {
 fn a_point_without_direction_has_no_cosine_of_its_own() {
     let result = runner(200).run(&a_case(), |mut case| {
         case.light.half_size = [0.0; 2];
-        case.light.all_sides = 1;
+        case.light.spread = 1;
         case.normal = tilted(&case.light, case.position, DVec3::new(0.3, 0.5, 0.8), 0.4);
         for position in [case.position, -case.position] {
             let to_light = -position.as_dvec3();

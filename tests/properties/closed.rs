@@ -225,13 +225,7 @@ fn leaks(gpu: &Arc<Gpu>, shot: &Shot, bounded: usize) -> Leaks {
             normal: normal.as_dvec3(),
         };
         let views = frame.plan.views().zip(&fits);
-        let seen = views.filter(|(planned, _)| {
-            in_view(
-                &planned.view,
-                point - Vec3::from(planned.view.center),
-                normal,
-            )
-        });
+        let seen = views.filter(|(planned, _)| in_view(&planned.view, point, normal));
         let hidden: f64 = seen
             .map(|(planned, fit)| {
                 let (view, walls) = (&planned.view, &walls);

@@ -107,9 +107,10 @@ fn check_with_twin(shot: &Shot) {
             .expect("occlusion");
         let mut partly = 0;
         for ((position, normal), found) in positions.iter().zip(&normals).zip(&occlusion) {
-            let to_point = Vec3::from_slice(position) - Vec3::from(view.center);
+            let position_eye = Vec3::from_slice(position);
+            let to_point = position_eye - Vec3::from(view.center);
             let normal = Vec3::from_slice(normal);
-            if position[3] == 0.0 || !in_view(&view, to_point, normal) {
+            if position[3] == 0.0 || !in_view(&view, position_eye, normal) {
                 continue;
             }
             let pixel = project(&view, &fit, false, to_point, normal);

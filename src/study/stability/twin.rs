@@ -84,7 +84,7 @@ fn add_hidden(
         .for_each(|(pixel, hidden)| {
             let (position, normal) = place(pixel);
             let to_point = position - Vec3::from(view.center);
-            if in_view(&view, to_point, normal) {
+            if in_view(&view, position, normal) {
                 let receiver = project(&view, &fit, planned.oblique, to_point, normal);
                 let share = part.hidden_share(&receiver, [0; 2], [size - 2; 2]);
                 *hidden += f64::from(view.weight) * share;

@@ -152,7 +152,7 @@ static void of_shots(hs_context *context) {
     light.radius = 1;
     light.center[1] = 2;
     WRONG_STRUCTURES(light, hs_shot_set_lights(shot, &light, 1));
-    light.shape = 2; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    light.shape = 4; REFUSED(hs_shot_set_lights(shot, &light, 1));
     light.shape = HS_LIGHT_DISC;
     light.radius = -1; REFUSED(hs_shot_set_lights(shot, &light, 1));
     light.radius = 1;
