@@ -328,20 +328,26 @@ fn punctual_lights_need_a_radius() {
         gltf.node(json!({"extensions": light, "translation": [0.5, 0.5, 4.0]}));
     }
     let scene = gltf.load().unwrap();
-    assert!(scene.lights.is_empty());
-    assert!(noted(&scene, "pass --radius") && noted(&scene, "suns"));
+    let sun = |angle_deg| LightShape::Sun {
+        direction: DVec3::NEG_Z,
+        angle_deg,
+    };
+    assert_eq!((scene.lights.len(), scene.lights[0].shape), (1, sun(0.533)));
+    assert!(noted(&scene, "pass --radius") && noted(&scene, "intensity"));
     gltf.json["nodes"][1]["translation"] = json!([0.5, 4.5, 0.0]);
     let options = LoadOptions {
         punctual_radius: Some(0.25),
+        sun_angle_deg: Some(2.0),
         ..LoadOptions::default()
     };
     let scene = gltf.load_with(&options).unwrap();
     let shapes: Vec<_> = scene.lights.iter().map(|light| light.shape).collect();
-    let disc = |normal| LightShape::Disc {
-        normal,
-        radius: 0.25,
+    let radius = 0.25;
+    let disc = LightShape::Disc {
+        normal: DVec3::NEG_Z,
+        radius,
     };
-    assert_eq!(shapes, [disc(DVec3::NEG_Y), disc(DVec3::NEG_Z)]);
+    assert_eq!(shapes, [LightShape::Sphere { radius }, disc, sun(2.0)]);
     assert_eq!(scene.lights[0].intensity, None);
     let options = LoadOptions {
         punctual_radius: Some(0.0),

@@ -20,9 +20,12 @@ pub struct ShotArgs {
     pub shot: PathBuf,
     #[command(flatten)]
     knobs: KnobArgs,
-    /// Make the scene's own point and spot lights discs of this radius, in scene units, 0 or more
+    /// Make the scene's own point lights spheres of this radius, spot lights discs, in scene units, 0 or more
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
+    /// Angular diameter of the scene's own directional lights in degrees, 0 to less than 180 [default: 0.533]
+    #[arg(long, value_name = "DEGREES")]
+    sun_angle: Option<f64>,
     /// Which scene of the glTF, counted from 0 [default: the file's own]
     #[arg(long, value_name = "N")]
     scene: Option<usize>,
@@ -55,6 +58,7 @@ impl ShotArgs {
         Overrides {
             // Adding 0 takes the sign from −0.
             radius: self.radius.map(|radius| radius + 0.0),
+            sun_angle_deg: self.sun_angle.map(|angle| angle + 0.0),
             scene_index: self.scene,
             camera_index: self.camera,
             ..self.load.overrides()

@@ -15,8 +15,9 @@ use serde::Deserialize;
 
 use super::document::{Document, label};
 use super::notes::Notes;
+use super::options::LoadOptions;
 use super::tree::Placed;
-use super::{AreaLight, Camera, LightShape, Scene};
+use super::{AreaLight, Camera, LightShape, SUN_ANGLE_DEG, Scene};
 use crate::Result;
 
 const AREA: &str = "EXT_lights_area";
@@ -74,8 +75,10 @@ pub(super) struct Emitters<'a> {
     document: &'a Document<'a>,
     area_lights: Vec<AreaLightJson>,
     punctual_radius: Option<f64>,
-    /// Whether a light has taken that radius.
+    sun_angle_deg: Option<f64>,
+    /// Whether a light has taken that radius, that angle.
     radius_taken: Cell<bool>,
+    angle_taken: Cell<bool>,
     /// [scene units, world]
     scene_center: DVec3,
     /// [scene units] The length of the bounding box's diagonal.
@@ -87,11 +90,7 @@ impl<'a> Emitters<'a> {
     ///
     /// # Errors
     /// When the file's area lights are malformed.
-    pub fn new(
-        document: &'a Document<'a>,
-        punctual_radius: Option<f64>,
-        scene: &Scene,
-    ) -> Result<Self> {
+    pub fn new(document: &'a Document<'a>, options: &LoadOptions, scene: &Scene) -> Result<Self> {
         let extensions = document.root.extensions.as_ref();
         let area_lights = match extensions.and_then(|extensions| extensions.others.get(AREA)) {
             Some(json) => {
@@ -103,16 +102,25 @@ impl<'a> Emitters<'a> {
         Ok(Self {
             document,
             area_lights: area_lights.lights,
-            punctual_radius,
+            punctual_radius: options.punctual_radius,
+            sun_angle_deg: options.sun_angle_deg,
             radius_taken: Cell::new(false),
+            angle_taken: Cell::new(false),
             scene_center: 0.5 * (low + high),
             scene_extent: (high - low).length(),
         })
     }
 
-    /// Whether the radius is of no use to the lights so far.
-    pub fn radius_is_idle(&self) -> bool {
-        self.punctual_radius.is_some() && !self.radius_taken.get()
+    /// A note on each flag that is of no use to the lights so far.
+    pub fn idle_flags(&self) -> impl Iterator<Item = String> {
+        let radius = self.punctual_radius.is_some() && !self.radius_taken.get();
+        let angle = self.sun_angle_deg.is_some() && !self.angle_taken.get();
+        let flags = [
+            ("--radius", "point or spot", radius),
+            ("--sun-angle", "directional", angle),
+        ];
+        let idle = flags.into_iter().filter(|(_, _, idle)| *idle);
+        idle.map(|(flag, kind, _)| format!("{flag} is ignored, for the scene has no {kind} light."))
     }
 
     /// The light of a node, if it has one that can be rendered.
@@ -197,41 +205,44 @@ impl<'a> Emitters<'a> {
         let json = self.document.get(index, "light", user)?;
         let name = label("light", index.value(), json.name.as_deref());
         let forward = Frame::of(world).forward;
-        let normal = match json.type_ {
-            Checked::Valid(Type::Spot) => forward,
-            // Without extent it has no direction, and shines to all sides alike; a disc must face one.
-            Checked::Valid(Type::Point) if self.punctual_radius == Some(0.0) => DVec3::ZERO,
-            Checked::Valid(Type::Point) => (self.scene_center - world.translation)
-                .try_normalize()
-                .unwrap_or(forward),
-            Checked::Valid(Type::Directional) => {
+        let shape = match (&json.type_, self.punctual_radius) {
+            (Checked::Invalid, _) => {
+                notes.add("a light of an invalid type is left out", &name);
+                return Ok(None);
+            }
+            (Checked::Valid(Type::Directional), _) => {
+                self.angle_taken.set(true);
+                LightShape::Sun {
+                    direction: forward,
+                    angle_deg: self.sun_angle_deg.unwrap_or(SUN_ANGLE_DEG),
+                }
+            }
+            (_, None) => {
                 notes.add(
-                    "suns (directional lights) are not supported and are left out",
+                    "a point or spot light has no extent and is left out; pass --radius to give it one",
                     &name,
                 );
                 return Ok(None);
             }
-            Checked::Invalid => {
-                notes.add("a light of an invalid type is left out", &name);
-                return Ok(None);
+            (Checked::Valid(kind), Some(radius)) => {
+                self.radius_taken.set(true);
+                match kind {
+                    Type::Spot => LightShape::Disc {
+                        normal: forward,
+                        radius,
+                    },
+                    _ => LightShape::Sphere { radius },
+                }
             }
         };
-        let Some(radius) = self.punctual_radius else {
-            notes.add(
-                "a point or spot light has no extent and is left out; pass --radius to make it a disc",
-                &name,
-            );
-            return Ok(None);
-        };
-        self.radius_taken.set(true);
         notes.add(
-            "the intensity of a point or spot light is ignored; it is set to suit the view",
+            "the intensity of a point, spot or directional light is ignored; it is set to suit the view",
             &name,
         );
         Ok(Some(AreaLight {
             name: json.name.clone().or(node.name.clone()).unwrap_or(name),
             center: world.translation,
-            shape: LightShape::Disc { normal, radius },
+            shape,
             color: Vec3::from(json.color).max(Vec3::ZERO),
             intensity: None,
         }))

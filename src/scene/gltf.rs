@@ -51,7 +51,7 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
         }
     }
     let mut scene = assemble(&document, geometry, options, &mut notes)?;
-    let emitters = Emitters::new(&document, options.punctual_radius, &scene)?;
+    let emitters = Emitters::new(&document, options, &scene)?;
     let mut light_notes = Notes::default();
     for place in &placed {
         if place.visible {
@@ -79,9 +79,8 @@ pub fn parse(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene> 
     }
     scene.files = document.files();
     scene.notes = notes.into_sentences();
-    if emitters.radius_is_idle() && !options.own_lights {
-        let note = "--radius is ignored, for the scene has no point or spot light.";
-        scene.notes.push(note.into());
+    if !options.own_lights {
+        scene.notes.extend(emitters.idle_flags());
     }
     Ok(scene)
 }

@@ -23,8 +23,10 @@ const FOR_PEOPLE: [&str; 2] = ["name", "what"];
 pub struct Overrides {
     /// [pixel] Width and height.
     pub size: Option<(u32, u32)>,
-    /// [scene units] ≥ 0. Point and spot lights of the scene become discs of this radius.
+    /// [scene units] ≥ 0. Point lights of the scene become spheres of this radius, spot lights discs.
     pub radius: Option<f64>,
+    /// [degree] \[0, 180) Angular diameter of the scene's directional lights.
+    pub sun_angle_deg: Option<f64>,
     /// Which scene of the glTF, counted from 0.
     pub scene_index: Option<usize>,
     /// Which camera of the scene, counted from 0. A camera in the shot file goes before it.
@@ -139,12 +141,18 @@ impl Shot {
 
 impl Overrides {
     /// # Errors
-    /// [`Error::Invalid`] when the radius is no length.
+    /// [`Error::Invalid`] when the radius is no length, or the angle not one of a sun.
     pub fn validate(&self) -> Result<()> {
         match self.radius {
             Some(radius) if !(0.0..=MAX_COORDINATE).contains(&radius) => Err(Error::Invalid(
                 format!("a light's radius is from 0 to 1e18, not {radius}"),
             )),
+            _ => Ok(()),
+        }?;
+        match self.sun_angle_deg {
+            Some(angle) if !(0.0..180.0).contains(&angle) => Err(Error::Invalid(format!(
+                "a sun's angle is from 0 to less than 180 degrees, not {angle}"
+            ))),
             _ => Ok(()),
         }
     }
@@ -153,6 +161,7 @@ impl Overrides {
         LoadOptions {
             scene: self.scene_index,
             punctual_radius: self.radius,
+            sun_angle_deg: self.sun_angle_deg,
             outside_paths: self.outside_paths,
             blend: self.blend,
             allow_missing: self.allow_missing,
@@ -207,9 +216,15 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
     let scene = gltf::load(&folder.join(shot.scene), &options)?;
     let mut draft = Draft::new(scene);
     draft.notes = notes;
-    if overrides.radius.is_some() && options.own_lights {
-        let note = "--radius is ignored, for the shot file has lights of its own.";
-        draft.notes.push(note.into());
+    let of_lights = [
+        ("--radius", overrides.radius),
+        ("--sun-angle", overrides.sun_angle_deg),
+    ];
+    for (flag, given) in of_lights {
+        if given.is_some() && options.own_lights {
+            let note = format!("{flag} is ignored, for the shot file has lights of its own.");
+            draft.notes.push(note);
+        }
     }
     if let Some(camera) = shot.camera {
         if overrides.camera_index.is_some() {

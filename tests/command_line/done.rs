@@ -230,7 +230,7 @@ fn a_gltf_brings_its_own_camera_and_light() {
 #[test]
 fn help_names_every_flag() {
     let shot = "--technique --packet --leaf --mapping --split --map --bias --no-footprint-pruning \
-                --hierarchical --counters --size --radius --scene --camera --device --validate \
+                --hierarchical --counters --size --radius --sun-angle --scene --camera --device --validate \
                 --max-memory --allow-outside-paths --max-triangles --max-texels --max-expansion";
     let render =
         "--output --visibility --light --stats --repeat --max-seconds --exposure --ambient";

@@ -176,15 +176,15 @@ fn write_point_light_scene(folder: &Folder) {
 fn flags_that_the_shot_does_not_read() {
     let folder = Folder::new();
     folder.write_shot(&plate());
-    let flags = ["--radius", "0.5", "--camera", "0"];
+    let flags = ["--radius", "0.5", "--sun-angle", "1", "--camera", "0"];
     assert_eq!(
         ignored(&folder, "shot.json", &flags),
-        ["--radius", "--camera"]
+        ["--radius", "--sun-angle", "--camera"]
     );
     // The scene brings a camera, and no point light.
     let scene = scenes().join("plate.gltf");
     let scene = scene.to_str().expect("UTF-8");
-    assert_eq!(ignored(&folder, scene, &flags), ["--radius"]);
+    assert_eq!(ignored(&folder, scene, &flags), ["--radius", "--sun-angle"]);
 
     write_point_light_scene(&folder);
     let told = notes(
@@ -204,7 +204,7 @@ fn flags_that_the_shot_does_not_read() {
     folder.does(&["plan", "shot.json"]);
     assert_eq!(
         ignored(&folder, "shot.json", &flags),
-        ["--radius", "--camera"]
+        ["--radius", "--sun-angle", "--camera"]
     );
 }
 

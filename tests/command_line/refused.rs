@@ -152,6 +152,7 @@ fn wrong_usage() {
         ("--bias", "NaN", "finite"),
         ("--bias", "inf", "finite"),
         ("--radius", "NaN", "from 0"),
+        ("--sun-angle", "180", "less than 180"),
         ("--ambient", "inf", "finite"),
         ("--exposure", "inf", "finite"),
         ("--exposure", "128", "below 128"),

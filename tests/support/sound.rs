@@ -31,6 +31,7 @@ const LIMITS: Limits = Limits {
 pub fn check_gltf(path: &Path, bytes: &[u8], overrides: &Overrides) -> bool {
     let options = gltf::LoadOptions {
         punctual_radius: overrides.radius,
+        sun_angle_deg: overrides.sun_angle_deg,
         limits: overrides.limits.clone(),
         ..gltf::LoadOptions::default()
     };
