@@ -10,7 +10,9 @@ use std::cell::Cell;
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3, Vec2, Vec3};
-use halfshade::shared::{ARCTANGENT, IRRADIANCE_NODES, Light};
+use halfshade::shared::{
+    ARCTANGENT, IRRADIANCE_NODES, Light, SPREAD_POINT, SPREAD_SPHERE, SPREAD_SUN,
+};
 use halfshade::twin::irradiance::irradiance;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -183,12 +185,49 @@ fn the_limit_is_a_point() {
     result.expect("one limit");
 }
 
+/// Above the horizon, irradiance is a cosine times that of a surface which faces the light.
+#[test]
+fn suns_and_spheres_shine_by_the_cosine() {
+    let result = runner(200).run(&a_case(), |case| {
+        let towards = -case.position.as_dvec3().normalize();
+        let aside = DVec3::new(0.3, 0.5, 0.8).reject_from_normalized(towards);
+        for (angle, radius) in [(0.0, 0.3), (0.6, 0.01), (1.0, 0.5), (0.9, 1e-6)] {
+            let normal = towards * f64::cos(angle) + aside.normalize() * f64::sin(angle);
+            let distance = case.position.as_dvec3().length();
+            let sphere = Light {
+                half_size: [(radius * distance) as f32; 2],
+                spread: SPREAD_SPHERE,
+                ..light(DQuat::IDENTITY, [0.0; 2], true)
+            };
+            let sun = Light {
+                n: (-towards).as_vec3().into(),
+                half_size: [radius as f32; 2],
+                spread: SPREAD_SUN,
+                ..light(DQuat::from_rotation_arc(DVec3::Z, -towards), [0.0; 2], true)
+            };
+            for (light, facing) in [
+                (sphere, distance.powi(-2)),
+                (sun, 1.0 / (1.0 + radius * radius)),
+            ] {
+                let found = f64::from(irradiance(&light, case.position, normal.as_vec3()));
+                let wanted = facing * angle.cos();
+                prop_assert!(
+                    (found - wanted).abs() <= BOUND * wanted,
+                    "{found} for {wanted}: {angle}, {light:?}"
+                );
+            }
+        }
+        Ok(())
+    });
+    result.expect("a cosine");
+}
+
 /// A point without direction shines to all sides alike.
 #[test]
 fn a_point_without_direction_has_no_cosine_of_its_own() {
     let result = runner(200).run(&a_case(), |mut case| {
         case.light.half_size = [0.0; 2];
-        case.light.spread = 1;
+        case.light.spread = SPREAD_POINT;
         case.normal = tilted(&case.light, case.position, DVec3::new(0.3, 0.5, 0.8), 0.4);
         for position in [case.position, -case.position] {
             let to_light = -position.as_dvec3();

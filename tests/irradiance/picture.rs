@@ -140,6 +140,25 @@ fn the_pass_is_its_twin() {
     });
 }
 
+#[test]
+fn the_pass_is_its_twin_under_suns_and_spheres() {
+    with_gpu(|gpu| {
+        let direction = DVec3::new(0.3, -1.0, 0.2);
+        let sun = |angle_deg| LightShape::Sun {
+            direction,
+            angle_deg,
+        };
+        let sphere = |radius| LightShape::Sphere { radius };
+        for shape in [sun(0.0), sun(0.533), sun(60.0), sphere(0.001), sphere(1.0)] {
+            let light = light(DVec3::Y * DISTANCE, shape);
+            let (levels, range) = difference_from_twin(&picture_of(gpu, &shot_of(stage(), light)));
+            println!("{shape:?}: {levels:.2} levels, radiance {range:?}");
+            assert!(levels < 1.0, "{shape:?}: {levels}");
+            assert!(range[1] > 0.5 && range[0] < 0.5 * range[1], "{range:?}");
+        }
+    });
+}
+
 /// Of a light that is small against its distance nothing is left but where it is: all pictures are that of the limit, a disc
 /// without extent. The floor is lit up to grazing angles.
 #[test]
