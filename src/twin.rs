@@ -9,6 +9,7 @@ pub mod contour;
 pub mod hierarchy;
 pub mod irradiance;
 pub mod kernels;
+pub mod quality;
 pub mod radial;
 pub mod receiver;
 pub mod resolve;

@@ -81,6 +81,7 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
             intensity: None,
         }],
         settings: Settings::default(),
+        budget_map: None,
         notes: Vec::new(),
     }
 }
@@ -139,6 +140,16 @@ fn settings_change_what_runs() {
     check("plate-split-1", &one_view, EVERYTHING, false);
     let pixels = with(plate(), |settings| settings.packet = (1, 1));
     check("plate-packet-1x1", &pixels, EVERYTHING, false);
+}
+
+#[test]
+fn a_budget_plans_coarser_levels_and_two_of_each_visibility() {
+    let limited = with(scene("plate"), |settings| {
+        settings.split = 1;
+        settings.budget = Some(12);
+        settings.budget_falloff = 0.5;
+    });
+    check("plate-budget", &limited, EVERYTHING, false);
 }
 
 #[test]

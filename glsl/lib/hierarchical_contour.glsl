@@ -17,14 +17,28 @@ bool is_pruned(View view, Packet packet, ivec2 node, int side, vec2 bounds);
 // The pass knows the corners of a cell that occlude, and whether they do for all of the packet's pixels [Yang09 eq. 3].
 uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed);
 
-// [cell] Where the first root of a walk over the packet's kernel begins.
-ivec2 first_root(Packet packet, int top) { return aligned(unpacked(packet.first), top); }
+// [cell] Where the first root of a walk over the packet's kernel begins. Coarser levels of the map have nodes side by side.
+ivec2 first_root(Packet packet, int top) {
+    ivec2 first = unpacked(packet.first);
+    return reads_coarse_map() ? first >> top << top : aligned(first, top);
+}
 
-// A walk over the packet's kernel, from nodes of the lowest level that is as large, as far as levels are built. Later rounds go
-// on where the one before stood.
-Walk walk_over(Packet packet, uint level_count, Progress from) {
+// [level] Of roots that are as large as a kernel, as far as levels are built.
+int root_level(Packet packet, uint level_count) {
     ivec2 side = unpacked(packet.last) - unpacked(packet.first) + 1;
-    int top = min(level_covering(max(side.x, side.y)), int(level_count) - 1);
+    int highest = reads_coarse_map() ? int(COARSE_LEVELS) - level_of_quality : int(level_count) - 1;
+    return min(level_covering(max(side.x, side.y)), highest);
+}
+
+// Depth bounds of a node that begins at a cell or before it.
+vec2 bounds_of(View view, ivec2 cell, int level) {
+    return reads_coarse_map() ? coarse_bounds(cell, level) : hierarchy_fetch(view, cell, level);
+}
+
+// A walk over the packet's kernel. Later rounds go on where the one before stood. It ends at the cells of the level of quality
+// that is read [Yang09 §6].
+Walk walk_over(Packet packet, uint level_count, Progress from) {
+    int top = root_level(packet, level_count);
     Walk walk = walk_from(first_root(packet, top), top);
     if (!is_first_round()) walk = resumed_walk(from, top);
     return walk;
@@ -38,7 +52,7 @@ bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
     bool found = false;
     SEARCH_WHILE(!found && !walk.ended) {
         int side = 1 << walk.level;
-        vec2 bounds = hierarchy_fetch(view, min(walk.node, last), walk.level);
+        vec2 bounds = bounds_of(view, min(walk.node, last), walk.level);
         vec4 limits = limits_in(packet, vec2(walk.node), vec2(walk.node + side));
         // Nodes stand where the level has them, not where the kernel begins and ends: some hang over.
         bool inside = all(lessThanEqual(walk.node, last)) && all(greaterThan(walk.node + side, first));

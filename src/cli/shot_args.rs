@@ -29,6 +29,10 @@ pub struct ShotArgs {
     /// Which camera of the glTF, counted from 0; a shot file's own camera goes first [default: 0]
     #[arg(long, value_name = "N")]
     camera: Option<usize>,
+    /// With --budget: an image (PNG, JPEG or WebP), stretched over the picture, of the share of it that is left: white all
+    /// [default: the shot file's "budget_map"]
+    #[arg(long, value_name = "FILE")]
+    budget_map: Option<PathBuf>,
     #[command(flatten)]
     load: LoadArgs,
 }
@@ -57,6 +61,7 @@ impl ShotArgs {
             radius: self.radius.map(|radius| radius + 0.0),
             scene_index: self.scene,
             camera_index: self.camera,
+            budget_map: self.budget_map.clone(),
             ..self.load.overrides()
         }
     }

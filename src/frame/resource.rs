@@ -56,6 +56,11 @@ pub struct Sizes {
     pub density: Density,
     /// [layer] Of the shadow map that are kept.
     pub layers: u32,
+    /// [level] Coarser than the map that are kept; 0 = no budget limits quality.
+    pub coarse_levels: u32,
+    /// Pixels have budgets of their own, and an image of shares is given for them.
+    pub budgets_vary: bool,
+    pub budget_mapped: bool,
     /// Whether there are kernels, and lists of packets and of pixels.
     pub kernels: bool,
     pub packet_lists: bool,

@@ -13,7 +13,7 @@ impl Plan {
             graph.add(Scope::Frame, map::first_passes());
             graph.add(
                 Scope::Frame,
-                kernel::first_passes(self.needs(Recipe::has_lists)),
+                kernel::first_passes(self.needs(Recipe::has_lists), self.budgets_vary()),
             );
         }
         for (index, light) in self.lights.iter().enumerate() {
@@ -45,6 +45,7 @@ impl Plan {
             levels: if recipe.kernels { self.levels } else { 0 },
             bounds_bits: self.bounds_bits,
             layers: recipe.layers,
+            coarse_levels: recipe.coarse_levels,
         }
     }
 

@@ -20,6 +20,11 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
         ("TELLS_CASTERS", plan.tells_casters.into()),
+        ("BUDGET", plan.budget.number.unwrap_or(0)),
+        ("BUDGETS_VARY", plan.budgets_vary().into()),
+        ("BUDGET_FALLOFF", plan.budget.falloff.to_bits()),
+        ("BUDGET_MASKING", plan.budget.masking.to_bits()),
+        ("BUDGET_MAPPED", plan.budget.mapped.into()),
     ])
 }
 
@@ -31,6 +36,7 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
         ("OBLIQUE", view.oblique.into()),
         ("ACCUMULATE", light.accumulates().into()),
         ("LAYERS", set.recipe.layers.max(1)),
+        ("COARSE_LEVELS", set.recipe.coarse_levels),
     ]);
     constants
 }

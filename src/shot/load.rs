@@ -1,13 +1,13 @@
 //! Shot files (JSON), and glTF files that bring their own camera and lights.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::{MAX_SIZE, Settings, Shot};
+use super::{MAX_SIZE, Settings, Shot, budget_map};
 use crate::scene::gltf::{self, Blend, Limits, LoadOptions};
 use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, Scene, file};
 use crate::{Error, Result};
@@ -29,6 +29,8 @@ pub struct Overrides {
     pub scene_index: Option<usize>,
     /// Which camera of the scene, counted from 0. A camera in the shot file goes before it.
     pub camera_index: Option<usize>,
+    /// An image of shares of the budget, in place of the shot file's ([`Shot::budget_map`]).
+    pub budget_map: Option<PathBuf>,
     /// A glTF may name files outside of its own folder.
     pub outside_paths: bool,
     /// What surfaces of a glTF are that blend with what is behind them.
@@ -43,6 +45,7 @@ pub struct Overrides {
 struct ShotFile {
     scene: String,
     casters: Option<Vec<String>>,
+    budget_map: Option<PathBuf>,
     camera: Option<CameraFile>,
     light: Option<LightFile>,
     lights: Option<Vec<LightFile>>,
@@ -124,6 +127,9 @@ impl Shot {
         if let Some(size) = overrides.size {
             shot.size = size.into();
         }
+        if overrides.budget_map.is_some() {
+            shot.budget_map.clone_from(&overrides.budget_map);
+        }
         let shot = shot.finish(path, overrides)?;
         match shot.validate() {
             Err(Error::Invalid(message)) => Err(Error::parse(path, message)),
@@ -202,6 +208,7 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
     let scene = gltf::load(&folder.join(shot.scene), &options)?;
     let mut draft = Draft::new(scene);
     draft.notes = notes;
+    draft.budget_map = shot.budget_map.map(|file| folder.join(file));
     if overrides.radius.is_some() && options.own_lights {
         let note = "--radius is ignored, for the shot file has lights of its own.";
         draft.notes.push(note.into());
@@ -248,6 +255,7 @@ struct Draft {
     camera: Option<Camera>,
     size: Size,
     lights: Vec<AreaLight>,
+    budget_map: Option<PathBuf>,
     notes: Vec<String>,
 }
 
@@ -270,6 +278,7 @@ impl Draft {
             camera: None,
             size: Size(None, None),
             lights: Vec::new(),
+            budget_map: None,
             notes: Vec::new(),
         }
     }
@@ -277,12 +286,15 @@ impl Draft {
     /// Takes what is missing from the scene.
     fn finish(self, path: &Path, overrides: &Overrides) -> Result<Shot> {
         let Self {
-            scene,
+            mut scene,
             camera,
             size,
             mut lights,
+            budget_map,
             notes,
         } = self;
+        let shares = budget_map.as_deref().map(budget_map::read).transpose()?;
+        scene.files.extend(budget_map);
         let camera = match camera {
             Some(camera) => camera,
             None => scene_camera(&scene, overrides.camera_index)
@@ -319,6 +331,7 @@ impl Draft {
             height,
             lights,
             settings,
+            budget_map: shares.map(Arc::new),
             notes,
         })
     }

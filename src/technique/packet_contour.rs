@@ -8,7 +8,7 @@
 
 use super::{
     CLASSIFY, CONTOUR_BIAS, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings,
-    TURNS_OF_WALKS, once, with,
+    TURNS_OF_WALKS, budget_knobs, once, with,
 };
 use crate::frame::{Domain, Pass};
 
@@ -51,6 +51,7 @@ impl Method for PacketContour {
             passes,
             ..Recipe::default()
         }
+        .within_budget(settings)
     }
 
     fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
@@ -61,6 +62,7 @@ impl Method for PacketContour {
         if has_packets(settings) && settings.packet_mapping() != Mapping::Cooperative {
             knobs.push("leaf");
         }
+        knobs.extend(budget_knobs(settings));
         knobs
     }
 

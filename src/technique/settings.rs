@@ -6,6 +6,7 @@ use super::{Recipe, Technique};
 use crate::Result;
 use crate::frame::Density;
 use crate::scene::AreaLight;
+use crate::shared::LEAST_BUDGET;
 
 choice! {
     /// What a leaf does whose status differs between the packet's pixels.
@@ -371,6 +372,44 @@ settings! {
         )
         .sets("BOTTOM_PATCHES");
 
+    /// [micro-occluder] [4, 4096] Along each side of a pixel's kernel, at most; None: no limit [Schwarz08 §4].
+    budget: Option<u32> = None,
+        Row::value(
+            "budget",
+            "N",
+            "Take levels of the map so coarse that kernels have no more than about N texels a side, 4 to 4096, blended smoothly; \
+             with packet-contour, pixel-contour, micropatch and bitmask of one layer [default: none, the map itself]",
+        )
+        .depends()
+        .within(4, 4096, "a budget is {} micro-occluders a side")
+        .swept("budgets", "NUMBERS", "Values of --budget, none for no limit [default: none]");
+
+    /// [0, 1] With a budget: the share of it that is left at the image's border.
+    budget_falloff: f32 = 1.0,
+        Row::value(
+            "budget-falloff",
+            "SHARE",
+            "With --budget: the share of it that is left at the image's border, 0 to 1; from the middle on it falls evenly",
+        )
+        .share("what is left of a budget at the image's border is {}");
+
+    /// [0, 1] With a budget: the share of it that is left where the surface's texture hides what shadows look like.
+    budget_masking: f32 = 1.0,
+        Row::value(
+            "budget-masking",
+            "SHARE",
+            "With --budget: the share of it that is left where a surface's texture has much contrast, 0 to 1",
+        )
+        .share("what is left of a budget under a texture is {}");
+
+    /// With a budget: kernels are looked for in all that the coarse texels at their corners stand for [Schwarz08 §6].
+    query_growth: bool = true,
+        Row::switch(
+            "no-query-growth",
+            "With --budget: look for kernels in no more than the texels in them, which ends shadows of coarse levels too early",
+        )
+        .sets("QUERY_GROWTH");
+
     /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
     footprint_pruning: bool = true,
         Row::switch(
@@ -463,6 +502,12 @@ impl Settings {
     /// Whether sub-lights that an occluder is near to give way to points.
     pub fn has_near_points(&self) -> bool {
         self.near_points > 0 && self.reads("near-points", false) == Some(true)
+    }
+
+    /// [level] Coarser than the map that a budget can take; None: there is no budget.
+    pub fn coarse_levels(&self) -> Option<u32> {
+        let whole = self.map.next_power_of_two().ilog2();
+        (self.budget).map(|_| whole.saturating_sub(LEAST_BUDGET.ilog2()))
     }
 
     /// Whether it is the light's points that cast shadows, hard ones.
