@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::super::run::{Measured, Run};
+use crate::compare::Metrics;
 
 /// A point of a curve.
 #[derive(Debug, Clone, Serialize)]
@@ -65,6 +66,11 @@ pub const TIME_MAX: Column = Column {
 impl Row {
     fn of(&self, value: impl Fn(&Measured) -> f64) -> f64 {
         self.run.measured().map_or(f64::NAN, value)
+    }
+
+    /// Of the errors of its visibility.
+    pub(super) fn metrics(&self, value: impl Fn(&Metrics) -> f64) -> f64 {
+        self.of(|measured| value(&measured.errors.metrics))
     }
 
     pub fn error(&self) -> f64 {
