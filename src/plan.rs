@@ -64,6 +64,10 @@ pub struct Plan {
     /// [pixel] Width and height of a packet.
     pub packet: (u32, u32),
     pub budget: Budget,
+    /// Pixels have several samples, for the picture.
+    pub multisampled: bool,
+    /// Such a sample may take the visibility of a neighbour.
+    pub neighbour_visibility: bool,
     /// The scene has textures that the frame needs.
     pub textured: bool,
     /// The scene has alpha-masked triangles.
@@ -99,6 +103,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     let frustum = Frustum::new(shot);
     let mut plan = Plan {
         textured: reads_textures(shot, outputs),
+        multisampled: outputs.picture && shot.settings.multisample > 1,
         budget: Budget {
             mapped: shot.budget_map.is_some(),
             ..Budget::new(&shot.settings)
@@ -208,6 +213,8 @@ impl Plan {
             loop_turns: limits.loop_turns,
             packet: settings.window(),
             budget: Budget::new(settings),
+            multisampled: false,
+            neighbour_visibility: settings.neighbour_visibility,
             textured: false,
             masked: false,
             orthographic: false,

@@ -153,6 +153,25 @@ fn a_budget_plans_coarser_levels_and_two_of_each_visibility() {
 }
 
 #[test]
+fn samples_of_a_pixel_are_planned_for_pictures_alone() {
+    let four = with(scene("plate"), |settings| {
+        settings.split = 1;
+        settings.multisample = 4;
+    });
+    check("plate-multisample", &four, EVERYTHING, false);
+    let planned = plan(&four, Outputs { picture: false }, &LIMITS).expect("a plan");
+    assert!(
+        planned
+            .omissions
+            .iter()
+            .any(|left| left.what == "samples of a pixel")
+    );
+    let one = with(four, |settings| settings.multisample = 1);
+    let single = plan(&one, Outputs { picture: false }, &LIMITS).expect("a plan");
+    assert_eq!(planned.memory_bytes(), single.memory_bytes());
+}
+
+#[test]
 fn every_technique_at_its_usual_settings() {
     for &technique in Technique::ALL {
         let usual = Settings::usual(technique);

@@ -37,6 +37,8 @@ pub struct Sizes {
     pub image: (u32, u32),
     /// The shaded picture is asked for.
     pub picture: bool,
+    /// Pixels have several samples.
+    pub multisampled: bool,
     /// The scene has textures that the frame needs.
     pub textured: bool,
     /// The scene has alpha-masked triangles.

@@ -8,7 +8,10 @@ impl Plan {
     /// All passes of a frame that draws every map.
     pub(super) fn ordered(&self) -> Graph {
         let mut graph = Graph::default();
-        graph.add(Scope::Frame, front::passes(self.front, self.casters));
+        graph.add(
+            Scope::Frame,
+            front::passes(self.front, self.multisampled, self.casters),
+        );
         if self.views().next().is_some() {
             graph.add(Scope::Frame, map::first_passes());
             graph.add(
@@ -29,7 +32,10 @@ impl Plan {
             }
             graph.add(scope, back::light_passes());
         }
-        graph.add(Scope::Frame, back::passes(self.front, self.outputs.picture));
+        graph.add(
+            Scope::Frame,
+            back::passes(self.front, self.outputs.picture, self.multisampled),
+        );
         graph
     }
 

@@ -50,6 +50,12 @@ impl HostFrame {
                 "meshes, vertices and triangles are at most {most} each"
             )));
         }
+        if self.settings.multisample > 1 {
+            return Err(Error::Unsupported(
+                "a host's surface has the samples that the host gives it; leave multisample at 1"
+                    .into(),
+            ));
+        }
         let redrawn = Recipe::new(&self.settings.of_light(&self.light)).redraws();
         if redrawn && !self.casters.are_triangles() {
             return Err(Error::Unsupported(format!(

@@ -70,6 +70,7 @@ impl Plan {
             inventory,
             image: self.size,
             picture: self.outputs.picture,
+            multisampled: self.multisampled,
             textured: self.textured,
             masked: self.masked,
             tells_casters: self.tells_casters,

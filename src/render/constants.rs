@@ -20,6 +20,8 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
         ("TELLS_CASTERS", plan.tells_casters.into()),
+        ("MULTISAMPLED", plan.multisampled.into()),
+        ("NEIGHBOUR_VISIBILITY", plan.neighbour_visibility.into()),
         ("BUDGET", plan.budget.number.unwrap_or(0)),
         ("BUDGETS_VARY", plan.budgets_vary().into()),
         ("BUDGET_FALLOFF", plan.budget.falloff.to_bits()),

@@ -14,6 +14,7 @@ mod report;
 mod row;
 mod schwarz08;
 mod schwarz08_quality;
+mod schwarz08_samples;
 mod stage;
 mod truth;
 mod yang09;
@@ -123,7 +124,7 @@ impl Candidate {
 }
 
 /// All experiments, by publication.
-pub static EXPERIMENTS: [Experiment; 18] = [
+pub static EXPERIMENTS: [Experiment; 19] = [
     yang09::FIG8,
     yang09::FIG9,
     yang09::FIG11,
@@ -131,6 +132,7 @@ pub static EXPERIMENTS: [Experiment; 18] = [
     yang09_packets::FIG13,
     schwarz08_quality::FIG7,
     schwarz08_quality::FIG8,
+    schwarz08_samples::FIG9,
     schwarz08::TABLE1,
     schwarz08_quality::TABLE2,
     atty06_format::FIG14,

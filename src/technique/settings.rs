@@ -441,6 +441,22 @@ settings! {
         )
         .sets("FILTER_REACH");
 
+    /// [sample] 1 or 4: of a pixel, in the picture; visibility is of one of them [Schwarz08 §7].
+    multisample: u32 = 1,
+        Row::value(
+            "multisample",
+            "N",
+            "Samples of a pixel in the picture, 1 or 4, which have one visibility together",
+        )
+        .one_of(&[1, crate::gpu::SAMPLES], "a pixel has {} samples");
+
+    /// With several samples: one that lies on another surface than its pixel's takes a neighbour's visibility.
+    neighbour_visibility: bool = true,
+        Row::switch(
+            "no-neighbour-visibility",
+            "With --multisample 4: give all samples of a pixel its visibility, whatever they lie on",
+        );
+
     /// Count pixels, packets, nodes and edges (costs time).
     counters: bool = false,
         Row::switch("counters", "Count pixels, packets, nodes and edges (takes time)").sets("COUNT");
@@ -531,7 +547,8 @@ impl Settings {
         let is_read = match flag {
             "technique" => !point || self.technique == Technique::Hard,
             "hierarchy" | "mssm-bits" => !point && Recipe::new(self).kernels,
-            "counters" => true,
+            "counters" | "multisample" => true,
+            "no-neighbour-visibility" => self.multisample > 1,
             _ => own.contains(&flag),
         };
         Some(is_read)

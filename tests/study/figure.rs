@@ -16,7 +16,7 @@ use super::made_up;
 use super::support::with_gpu;
 
 /// What the issue asks for.
-const NAMES: [&str; 18] = [
+const NAMES: [&str; 19] = [
     "yang09-fig8",
     "yang09-fig9",
     "yang09-fig11",
@@ -24,6 +24,7 @@ const NAMES: [&str; 18] = [
     "yang09-fig13",
     "schwarz08-fig7",
     "schwarz08-fig8",
+    "schwarz08-fig9",
     "schwarz08-table1",
     "schwarz08-table2",
     "atty06-fig14",

@@ -82,6 +82,11 @@ impl Row {
         self.of(|measured| measured.shadow_ms.median)
     }
 
+    /// [ms] The whole frame.
+    pub fn frame_ms(&self) -> f64 {
+        self.of(|measured| measured.total_ms.median)
+    }
+
     /// [ms] Of one pass, summed over a frame.
     pub fn pass_ms(&self, pass: &str) -> f64 {
         self.of(|measured| measured.passes.get(pass).map_or(f64::NAN, |ms| ms.median))
