@@ -17,6 +17,7 @@
 #include "occlusion.glsl"
 #include "count.glsl"
 #include "radial.glsl"
+#include "blend.glsl"
 #include "packet_bounds.glsl"
 #include "cooperative_walk.glsl"
 #include "local_packets.glsl"
@@ -39,7 +40,8 @@ BUFFER(pixels);
 shared uint edge_lanes[GROUP_SIZE];
 shared uint cell_lanes[2u * GROUP_SIZE];
 
-// This lane's pixel.
+// This lane's pixel, at the level of quality that the pass reads for it.
+int level_of_lane;
 Receiver receiver;
 Kernel kernel;
 // [half sizes²] What it adds up.
@@ -158,11 +160,11 @@ bool sum_kernel(View view, Packet packet, int level_count, bool takes_part) {
 // Hides the lane's pixel as far as the sum says, or leaves it to the pixel list.
 void conclude(View view, uint index, bool complete) {
     if (!complete) {
-        append_pixel(index);
+        append_pixel(index | left_to_list());
         return;
     }
     float hidden = sum + centre_area(view, receiver, 0u);
-    add_occluded(index, view.weight * share_of(hidden, view.area));
+    add_occluded(index, share_of_level(index) * view.weight * share_of(hidden, view.area));
 }
 
 void count_packet(bool takes_part, bool complete) {
@@ -173,19 +175,45 @@ void count_packet(bool takes_part, bool complete) {
     if (!complete) atomicAdd(counters.reprocessed_packets, 1u);
 }
 
+// Holds this lane's pixel.
+void hold_pixel(View view, Fit fit, uint index) {
+    choose_level(view, index);
+    level_of_lane = level_of_quality;
+    SurfacePoint point = surface_at(pixel_at(index));
+    receiver = at_level(view, project(view, fit, point.position - view.center, point.normal, point.error));
+    kernel = kernels[index];
+    Cells cells = at_level(Cells(unpacked(kernel.first), unpacked(kernel.last), true));
+    kernel.first = packed(cells.first);
+    kernel.last = packed(cells.last);
+}
+
+// Whether this lane's pixel had better walk with that of the first active lane, at one level.
+bool joins_first() {
+    bool same_level = subgroupBroadcastFirst(level_of_lane) == level_of_lane;
+    bool like = is_like_first(receiver, kernel);
+    return same_level && like;
+}
+
+// Makes all lanes read the level of those that take part.
+void read_level(View view, Fit fit, bool takes_part) {
+    if (QUALITY != QUALITY_FINEST) {
+        level_of_quality = subgroupMax(takes_part ? level_of_lane : 0);
+        coarse_map_size = view.map_size;
+    }
+    kappa = fit.near / (fit.focal * view.half_size) * float(1 << level_of_quality);
+}
+
 // Integrates the pixels that the lanes hold. remains: this lane has one.
 void integrate_pixels(View view, Fit fit, uint index, bool remains) {
     receiver = Receiver(vec2(0.0), 0.0, 0.0, vec2(0.0), false, vec2(1.0), vec2(1.0), vec2(0.0));
     kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (remains) {
-        SurfacePoint point = surface_at(pixel_at(index));
-        receiver = project(view, fit, point.position - view.center, point.normal, point.error);
-        kernel = kernels[index];
-    }
+    level_of_lane = 0;
+    if (remains) hold_pixel(view, fit, index);
     while (subgroupAny(remains)) {
         bool takes_part = false;
-        if (remains) takes_part = is_like_first(receiver, kernel);
+        if (remains) takes_part = joins_first();
         remains = remains && !takes_part;
+        read_level(view, fit, takes_part);
         packet_is_behind = subgroupAny(takes_part && receiver.behind);
         Packet packet = packet_of(index, receiver, kernel, takes_part);
         bool complete = sum_kernel(view, packet, int(fit.level_count), takes_part);
@@ -198,7 +226,6 @@ void main() {
     find_lanes();
     View view = views[push.index];
     Fit fit = fits[push.index];
-    kappa = fit.near / (fit.focal * view.half_size);
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint held = subgroupBallotBitCount(subgroupBallot(true));
     uint parts = (PIXELS_PER_PACKET + held - 1u) / held;
@@ -210,6 +237,7 @@ void main() {
         uint number = part % parts * held + lane;
         uint index = 0u;
         bool remains = number < PIXELS_PER_PACKET && is_penumbra(place, in_window(min(number, PIXELS_PER_PACKET - 1u)), index);
+        if (QUALITY != QUALITY_FINEST && remains) remains = share_of_level(index) > 0.0;
         integrate_pixels(view, fit, index, remains);
     }
     if (COUNT) count_work();

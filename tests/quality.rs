@@ -13,7 +13,7 @@ use halfshade::image::Plane;
 use halfshade::render::Renderer;
 use halfshade::shared::{KERNEL_LIT, KERNEL_PENUMBRA, KERNEL_UMBRA, LEAST_BUDGET};
 use halfshade::shot::Shot;
-use halfshade::technique::{Settings, Technique};
+use halfshade::technique::{Hierarchy as Density, Leaf, Mapping, Settings, Technique};
 use halfshade::twin::contour::ShadowMap;
 use halfshade::twin::hierarchy::Hierarchy;
 use halfshade::twin::kernels::{kernel_of, unpacked};
@@ -203,7 +203,7 @@ fn blended_contours_are_those_of_their_twins() {
             ("knot", 1, (4, 4), 12),
             ("staircase", 2, (1, 1), 4),
             ("colonnade", 1, (4, 2), 5),
-            ("grid", 1, (4, 4), 7),
+            ("grid", 1, Settings::LOCAL, 7),
         ] {
             let mut shot = shot(scene);
             (shot.settings.split, shot.settings.packet) = (split, packet);
@@ -232,25 +232,23 @@ fn limited() -> Vec<Settings> {
         near_points: 0,
         ..Settings::usual(technique)
     };
-    let packets = usual(Technique::PacketContour);
-    let pixels = Settings {
-        split: 1,
-        packet: (1, 1),
-        ..packets.clone()
-    };
-    let lanes = Settings {
-        mapping: halfshade::technique::Mapping::Lanes,
-        leaf: halfshade::technique::Leaf::Reprocess,
-        ..packets.clone()
+    let local = usual(Technique::PacketContour);
+    let packets = |packet, mapping, leaf| Settings {
+        packet,
+        mapping,
+        leaf,
+        ..local.clone()
     };
     let walked = Settings {
         hierarchical: true,
         ..usual(Technique::PixelContour)
     };
     vec![
-        packets,
-        pixels,
-        lanes,
+        packets((1, 1), Mapping::Serial, Leaf::PerPixel),
+        packets((4, 4), Mapping::Serial, Leaf::PerPixel),
+        packets((4, 4), Mapping::Lanes, Leaf::Reprocess),
+        packets((4, 2), Mapping::Cooperative, Leaf::PerPixel),
+        local.clone(),
         walked,
         usual(Technique::PixelContour),
         usual(Technique::Micropatch),
@@ -347,7 +345,7 @@ fn over_precision_ends_shadows_too_early() {
         let mut shot = shot("knot");
         shot.settings.split = 1;
         shot.settings.budget = Some(4);
-        shot.settings.hierarchy = halfshade::technique::Hierarchy::Mssm;
+        shot.settings.hierarchy = Density::Mssm;
         let grown = visibility(gpu, &shot);
         let mut of_grown = renderer(gpu, &shot);
         let kernels = traces(&mut of_grown, 0).kernels;

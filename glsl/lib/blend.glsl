@@ -31,6 +31,12 @@ float coarse_bias(View view, vec2 plane, float d) {
     return min(bias, BIAS_SLOPE_MAX * d);
 }
 
+// What an entry of the pixel list says of the level that is left to it.
+uint left_to_list() {
+    if (QUALITY == QUALITY_FINEST) return 0u;
+    return QUALITY == QUALITY_FINER ? LISTED_FINER : LISTED_COARSER;
+}
+
 Receiver at_level(View view, Receiver receiver) {
     if (!reads_coarse_map()) return receiver;
     float side = float(1 << level_of_quality);

@@ -1,11 +1,11 @@
 // A walk through the hierarchy that the lanes of a subgroup share: each looks at a node of its own, and what stays open goes back
 // to a stack in shared memory, in the order of the lanes, so that a walk repeats to the bit. It finds the cells that
-// hierarchical_contour.glsl finds. Any width of subgroup will do. Needs kernel.glsl, packet_bounds.glsl and budget.glsl.
+// hierarchical_contour.glsl finds. Any width of subgroup will do. Needs kernel.glsl, map.glsl, packet_bounds.glsl and
+// budget.glsl.
 
 #extension GL_KHR_shader_subgroup_ballot : require
 
-#include "quadtree.glsl"
-#include "hierarchy.glsl"
+#include "nodes.glsl"
 
 // [node] A step opens four nodes for each that it takes, three more than it frees: so many hold a walk of twelve levels.
 const uint STACK_PER_LANE = 12u;
@@ -55,9 +55,8 @@ bool has_nodes(SharedWalk walk) { return walk.size > 0u && walk.fits; }
 // Over a packet's kernel, from nodes of the lowest level that is as large, as far as levels are built.
 SharedWalk shared_walk_over(Packet packet, int level_count) {
     SharedWalk walk = SharedWalk(unpacked(packet.first), unpacked(packet.last), 0u, 0u, true);
-    ivec2 side = walk.last - walk.first + 1;
-    int top = min(level_covering(max(side.x, side.y)), level_count - 1);
-    ivec2 root = aligned(walk.first, top);
+    int top = root_level(packet, level_count);
+    ivec2 root = first_root(packet, top);
     // Squares of four roots, which need not be nodes.
     uvec2 count = uvec2((walk.last - root) >> (top + 1)) + 1u;
     walk.size = count.x * count.y;
@@ -80,7 +79,7 @@ void step_down(View view, Packet packet, inout SharedWalk walk) {
     int side = 1 << level;
     ivec2 node = cell_of(parent) + ivec2(lane & 1u, lane >> 1 & 1u) * side;
     open = open && all(lessThanEqual(node, walk.last)) && all(greaterThan(node + side, walk.first));
-    vec2 bounds = hierarchy_fetch(view, min(node, walk.last), level);
+    vec2 bounds = bounds_of(view, min(node, walk.last), level);
     nodes_visited += uint(open);
     samples_read += uint(open);
     open = open && may_differ(bounds, limits_in(packet, vec2(node), vec2(node + side)))

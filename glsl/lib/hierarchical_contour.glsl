@@ -5,8 +5,7 @@
 //
 // DEVIATION [Yang09 §4.2]: a large kernel starts from up to 4×4 roots instead of one (`ROOT_LEVELS`).
 
-#include "quadtree.glsl"
-#include "hierarchy.glsl"
+#include "nodes.glsl"
 #include "walk.glsl"
 #include "packet_bounds.glsl"
 
@@ -17,28 +16,10 @@ bool is_pruned(View view, Packet packet, ivec2 node, int side, vec2 bounds);
 // The pass knows the corners of a cell that occlude, and whether they do for all of the packet's pixels [Yang09 eq. 3].
 uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed);
 
-// [cell] Where the first root of a walk over the packet's kernel begins. Coarser levels of the map have nodes side by side.
-ivec2 first_root(Packet packet, int top) {
-    ivec2 first = unpacked(packet.first);
-    return reads_coarse_map() ? first >> top << top : aligned(first, top);
-}
-
-// [level] Of roots that are as large as a kernel, as far as levels are built.
-int root_level(Packet packet, uint level_count) {
-    ivec2 side = unpacked(packet.last) - unpacked(packet.first) + 1;
-    int highest = reads_coarse_map() ? int(COARSE_LEVELS) - level_of_quality : int(level_count) - 1;
-    return min(level_covering(max(side.x, side.y)), highest);
-}
-
-// Depth bounds of a node that begins at a cell or before it.
-vec2 bounds_of(View view, ivec2 cell, int level) {
-    return reads_coarse_map() ? coarse_bounds(cell, level) : hierarchy_fetch(view, cell, level);
-}
-
 // A walk over the packet's kernel. Later rounds go on where the one before stood. It ends at the cells of the level of quality
 // that is read [Yang09 §6].
 Walk walk_over(Packet packet, uint level_count, Progress from) {
-    int top = root_level(packet, level_count);
+    int top = root_level(packet, int(level_count));
     Walk walk = walk_from(first_root(packet, top), top);
     if (!is_first_round()) walk = resumed_walk(from, top);
     return walk;

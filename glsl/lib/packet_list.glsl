@@ -110,12 +110,6 @@ Receiver receiver_of(uint slot) {
 // no, if the packet's pixels have to be integrated one by one instead.
 Progress sum_kernel(View view, Packet packet, Progress from, out bool agreed);
 
-// What an entry of the pixel list says of the level that is left to it.
-uint left_to_list() {
-    if (QUALITY == QUALITY_FINEST) return 0u;
-    return QUALITY == QUALITY_FINER ? LISTED_FINER : LISTED_COARSER;
-}
-
 // What a pixel's sum over all edges says.
 void conclude(View view, uint slot) {
     float hidden = sum[slot] + centre_area(view, receiver_of(slot), 0u);
