@@ -95,6 +95,7 @@ fn shot() -> Result<Shot> {
             intensity: None,
         }],
         settings: Settings::usual(Technique::PacketContour),
+        budget_map: None,
         notes: Vec::new(),
     })
 }

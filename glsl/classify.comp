@@ -5,6 +5,8 @@
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "kernel.glsl"
+#include "coarse_map.glsl"
+#include "quality.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -16,6 +18,7 @@ writeonly BUFFER(packets);
 writeonly BUFFER(pixels);
 readonly BUFFER(costs);
 BUFFER(counters);
+readonly BUFFER(quality);
 
 #include "surface.glsl"
 #include "packet_grid.glsl"
@@ -35,6 +38,8 @@ struct PacketStats {
     float pixel_cost;
     // A receiver has the sub-light's centre behind its plane; what bounds the others' limits does not hold for it.
     bool behind;
+    // [level] Least and largest whole one of quality.
+    vec2 levels;
 };
 
 float node_cost(float width) {
@@ -45,6 +50,12 @@ float node_cost(float width) {
 float width_of(ivec2 first, ivec2 last) {
     ivec2 side = last - first + 1;
     return float(max(side.x, side.y));
+}
+
+void include_level(inout PacketStats stats, uint pixel) {
+    if (BUDGET == 0u) return;
+    float level = floor(quality[pixel]);
+    stats.levels = vec2(min(stats.levels.x, level), max(stats.levels.y, level));
 }
 
 void include(inout PacketStats stats, Kernel kernel, Receiver receiver) {
@@ -78,8 +89,9 @@ void include(inout PacketStats stats, Kernel kernel, Receiver receiver) {
 // DEVIATION [Yang09 eq. 4]: depths are projective, since an empty sample has no finite linear depth.
 // DEVIATION [Yang09 eq. 4]: the spread of the receivers' planes counts as that of their depths does.
 // DEVIATION [Yang09 eq. 6]: only penumbra pixels count, for the others are not integrated.
+// Pixels whose visibility is blended between other levels of quality share no walk.
 bool is_coherent(PacketStats stats) {
-    if (stats.behind) return false;
+    if (stats.behind || stats.levels.x < stats.levels.y) return false;
     float width = width_of(stats.first, stats.last);
     float overlap = min(stats.packet.depth_max, stats.kernel_depths.y)
                   - max(stats.packet.depth_min, stats.kernel_depths.x);
@@ -110,9 +122,11 @@ void main() {
     stats.kernel_depths = vec2(1e30, 0.0);
     stats.pixel_cost = 0.0;
     stats.behind = false;
+    stats.levels = BUDGET > 0u ? vec2(1e30, -1e30) : vec2(0.0);
     uint index;
     [[dont_unroll]] for (uint i = 0u; i < PIXELS_PER_PACKET; ++i) {
         if (!is_penumbra(at, i, index)) continue;
+        include_level(stats, index);
         SurfacePoint point = surface_at(pixel_at(index));
         include(stats, kernels[index], project(view, fit, point.position - view.center, point.normal, point.error));
     }

@@ -17,6 +17,7 @@
 #include "occlusion.glsl"
 #include "count.glsl"
 #include "radial.glsl"
+#include "blend.glsl"
 #include "packet_bounds.glsl"
 #include "cooperative_walk.glsl"
 #include "local_packets.glsl"
@@ -42,7 +43,8 @@ readonly BUFFER(windows);
 shared uint edge_lanes[GROUP_SIZE];
 shared uint cell_lanes[2u * GROUP_SIZE];
 
-// This lane's pixel.
+// This lane's pixel, at the level of quality that the pass reads for it.
+int level_of_lane;
 Receiver receiver;
 Kernel kernel;
 // [half sizes²] What it adds up.
@@ -164,11 +166,11 @@ bool sum_kernel(View view, Packet packet, int level_count, bool takes_part) {
 // Hides the lane's pixel as far as the sum says, or leaves it to the pixel list.
 void conclude(View view, uint index, bool complete) {
     if (!complete) {
-        append_pixel(index);
+        append_pixel(index | left_to_list());
         return;
     }
     float hidden = sum + centre_area(view, receiver, 0u);
-    add_occluded(index, view.weight * share_of(hidden, view.area));
+    add_occluded(index, share_of_level(index) * view.weight * share_of(hidden, view.area));
 }
 
 void count_packet(bool takes_part, bool complete) {
@@ -179,21 +181,49 @@ void count_packet(bool takes_part, bool complete) {
     if (!complete) atomicAdd(counters.reprocessed_packets, 1u);
 }
 
-// Integrates the pixels that the lanes hold. remains: this lane has one; some lane does.
+// Holds this lane's pixel.
+void hold_pixel(View view, Fit fit, uvec2 pixel) {
+    uint index = index_of(pixel);
+    choose_level(view, index);
+    level_of_lane = level_of_quality;
+    SurfacePoint point = surface_at(pixel);
+    receiver = at_level(view, project(view, fit, point.position - view.center, point.normal, point.error));
+    kernel = kernels[index];
+    Cells cells = at_level(Cells(unpacked(kernel.first), unpacked(kernel.last), true));
+    kernel.first = packed(cells.first);
+    kernel.last = packed(cells.last);
+}
+
+// Whether this lane's pixel had better walk with that of the first active lane, at one level.
+bool joins_first(uvec2 cell) {
+    bool same_level = subgroupBroadcastFirst(level_of_lane) == level_of_lane;
+    bool like = is_like_first(receiver, kernel, cell);
+    return same_level && like;
+}
+
+// Makes all lanes read the level of those that take part.
+void read_level(View view, Fit fit, bool takes_part) {
+    if (QUALITY != QUALITY_FINEST) {
+        level_of_quality = subgroupMax(takes_part ? level_of_lane : 0);
+        coarse_map_size = view.map_size;
+    }
+    kappa = fit.near / (fit.focal * view.half_size) * float(1 << level_of_quality);
+}
+
+// Integrates the pixels that the lanes hold. remains: this lane has one.
 void integrate_pixels(View view, Fit fit, uvec2 pixel, bool remains) {
     uint index = index_of(pixel);
     uvec2 cell = pixel / uvec2(PACKET_WIDTH, PACKET_HEIGHT);
     receiver = Receiver(vec2(0.0), 0.0, 0.0, vec2(0.0), false, vec2(1.0), vec2(1.0), vec2(0.0));
     kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (remains) {
-        SurfacePoint point = surface_at(pixel);
-        receiver = project(view, fit, point.position - view.center, point.normal, point.error);
-        kernel = kernels[index];
-    }
+    level_of_lane = 0;
+    if (remains) hold_pixel(view, fit, pixel);
+    if (!subgroupAny(remains)) return;
     do {
         bool takes_part = false;
-        if (remains) takes_part = is_like_first(receiver, kernel, cell);
+        if (remains) takes_part = joins_first(cell);
         remains = remains && !takes_part;
+        read_level(view, fit, takes_part);
         packet_is_behind = subgroupAny(takes_part && receiver.behind);
         Packet packet = packet_of(index, receiver, kernel, takes_part);
         bool complete = sum_kernel(view, packet, int(fit.level_count), takes_part);
@@ -206,7 +236,6 @@ void main() {
     find_lanes();
     View view = views[push.index];
     Fit fit = fits[push.index];
-    kappa = fit.near / (fit.focal * view.half_size);
     uint held = subgroupBallotBitCount(subgroupBallot(true));
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
@@ -220,7 +249,9 @@ void main() {
         do {
             uint rank = min(first + lane, count - 1u);
             uvec2 pixel = window.place * TILE_SIZE + pixel_in_window(place_of_bit(window.penumbra, rank));
-            integrate_pixels(view, fit, pixel, first + lane < count);
+            bool remains = first + lane < count;
+            if (QUALITY != QUALITY_FINEST && remains) remains = share_of_level(index_of(pixel)) > 0.0;
+            integrate_pixels(view, fit, pixel, remains);
             first += held;
         } while (first < count);
         entry += groups * gl_NumSubgroups;

@@ -7,6 +7,7 @@
 #include "texture.glsl"
 
 layout(constant_id = 30) const bool ORTHOGRAPHIC = false;  // the camera's rays are parallel
+layout(constant_id = 59) const bool MULTISAMPLED = false;  // pixels have four samples
 
 readonly BUFFER(frame);
 
@@ -23,10 +24,24 @@ vec3 linear_of(vec3 srgb) {
     return mix(srgb / 12.92, pow((srgb + 0.055) / 1.055, vec3(2.4)), greaterThan(srgb, vec3(0.04045)));
 }
 
-// Where the ray through the pixel's centre meets the plane. Seen edge-on the plane says nothing, so that the triangle's
+// [pixel] Vulkan's standard places of four samples; their middle is the pixel's.
+const vec2 SAMPLE_PLACES[4] = vec2[4](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625), vec2(0.625, 0.875));
+
+// [pixel] Where the triangle is looked at: in the pixel's middle, or in that of those of its samples that the triangle covers.
+// DEVIATION [Schwarz08 §7]: there all samples are taken in the pixel's middle. A plane that goes on beyond its triangle may lie
+// below the surface that begins there, and be in its shadow.
+vec2 place_in_window() {
+    if (!MULTISAMPLED) return gl_FragCoord.xy;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i)
+        if ((gl_SampleMaskIn[0] >> i & 1) != 0) sum += vec3(SAMPLE_PLACES[i], 1.0);
+    return floor(gl_FragCoord.xy) + sum.xy / max(sum.z, 1.0);
+}
+
+// Where the ray through that place meets the plane. Seen edge-on the plane says nothing, so that the triangle's
 // corners bound it.
 vec3 position_on_ray() {
-    vec2 window = 2.0 * gl_FragCoord.xy / vec2(frame.size) - 1.0;
+    vec2 window = 2.0 * place_in_window() / vec2(frame.size) - 1.0;
     vec3 aside = frame.right * (window.x / dot(frame.right, frame.right)) - frame.up * (window.y / dot(frame.up, frame.up));
     vec3 start = ORTHOGRAPHIC ? aside : vec3(0.0);
     vec3 direction = ORTHOGRAPHIC ? frame.forward : frame.forward + aside;

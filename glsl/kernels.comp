@@ -8,6 +8,8 @@
 #include "quadtree.glsl"
 #include "hierarchy.glsl"
 #include "kernel.glsl"
+#include "coarse_map.glsl"
+#include "quality.glsl"
 #include "occlusion.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
@@ -16,6 +18,7 @@ readonly BUFFER(frame);
 readonly BUFFER(views);
 readonly BUFFER(fits);
 writeonly BUFFER(kernels);
+writeonly BUFFER(quality);
 BUFFER(counters);
 TEXTURE(shadow_map);
 #include "surface.glsl"
@@ -51,7 +54,13 @@ bool nothing_occludes(Receiver receiver, Cells cells) {
     return occluding == 0u;
 }
 
-Kernel kernel_of(View view, Fit fit, Receiver receiver) {
+// What a query asks for: the kernel, and all that its budget's coarse texels stand for [Schwarz08 §6].
+Cells queried(View view, Cells cells, float budget) {
+    if (BUDGET == 0u || !QUERY_GROWTH) return cells;
+    return grown_cells(view, cells, coarse_level(cells, budget));
+}
+
+Kernel kernel_of(View view, Fit fit, Receiver receiver, float budget) {
     Kernel kernel = Kernel(KERNEL_LIT, 0u, 0u, 0.0, 0.0);
     // The projection's near plane is the nearest caster: depth 1.
     float depth_max = 1.0;
@@ -62,14 +71,16 @@ Kernel kernel_of(View view, Fit fit, Receiver receiver) {
         if (depth_max <= receiver.biased) return kernel;
         cells = kernel_cells(view, receiver, depth_max);
         if (any(greaterThan(cells.first, cells.last))) return kernel;
-        range = hierarchy_query(view, cells.first, cells.last, int(fit.level_count), finer);
+        Cells asked = queried(view, cells, budget);
+        range = hierarchy_query(view, asked.first, asked.last, int(fit.level_count), finer);
         bool stalls = range.y >= depth_max;
         if (stalls && finer == FINER) break;
         if (stalls || round >= COARSE_ROUNDS) finer = FINER;
         depth_max = min(depth_max, range.y);
     }
     if (depth_max <= receiver.biased) return kernel;
-    if (CONTOURS && LAYERS == 1u && nothing_occludes(receiver, cells)) return kernel;
+    bool is_coarse = BUDGET > 0u && coarse_level(cells, budget) > 0;
+    if (CONTOURS && LAYERS == 1u && !is_coarse && nothing_occludes(receiver, cells)) return kernel;
     bool umbra = cells.whole && !receiver.behind && range.x > highest_limit(receiver, cells.first, cells.last + 1);
     kernel.status = umbra ? KERNEL_UMBRA : KERNEL_PENUMBRA;
     kernel.first = packed(cells.first);
@@ -77,6 +88,13 @@ Kernel kernel_of(View view, Fit fit, Receiver receiver) {
     kernel.depth_min = range.x;
     kernel.depth_max = range.y;
     return kernel;
+}
+
+// Writes the level of quality of a kernel that is integrated.
+void choose_quality(uint index, Kernel kernel, float budget) {
+    Cells cells = Cells(unpacked(kernel.first), unpacked(kernel.last), true);
+    quality[index] = quality_of(cells, budget);
+    if (COUNT) atomicAdd(counters.coarse_levels, uint(coarse_level(cells, budget)));
 }
 
 void count(uint status) {
@@ -95,7 +113,9 @@ Kernel kernel_at(View view, uvec2 pixel) {
     if (!point.exists || !in_view(view, point.position, point.normal)) return kernel;
     kernel.status = KERNEL_LIT;
     Fit fit = fits[push.index];
-    if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error));
+    float budget = budget_of(index_of(pixel));
+    if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error), budget);
+    if (BUDGET > 0u && kernel.status == KERNEL_PENUMBRA) choose_quality(index_of(pixel), kernel, budget);
     return kernel;
 }
 

@@ -26,7 +26,7 @@ pub use device::{Gpu, Options};
 pub use draw::{Attachments, Draw, MAX_COLORS};
 pub use host::{HostBuffer, HostImage, HostImageInfo, ImageState, Loan};
 pub use host_device::{Enabled, HostDevice};
-pub use memory::{Buffer, Image, ImageKind};
+pub use memory::{Buffer, Image, ImageKind, SAMPLES};
 pub use pass::{Bound, ComputePass, GraphicsPass, Sources};
 pub use physical::{DeviceInfo, list_devices};
 pub use pipeline::{Blend, GraphicsState};

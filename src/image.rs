@@ -72,4 +72,45 @@ impl Plane {
             data,
         })
     }
+
+    /// Stretched to another size: between the values of four pixels, and beyond the outermost as these are. Of no pixels
+    /// nothing is made.
+    pub fn stretched(&self, width: usize, height: usize) -> Vec<f32> {
+        let place = |i: usize, side: usize, own: usize| {
+            let at = (i as f32 + 0.5) * own as f32 / side as f32 - 0.5;
+            let at = at.clamp(0.0, own as f32 - 1.0);
+            let first = at.floor() as usize;
+            (first, (first + 1).min(own - 1), at - at.floor())
+        };
+        let value = |x: usize, y: usize| {
+            let (left, right, across) = place(x, width, self.width);
+            let (top, bottom, down) = place(y, height, self.height);
+            let row = |row: usize| {
+                let (a, b) = (
+                    self.data[row * self.width + left],
+                    self.data[row * self.width + right],
+                );
+                a + (b - a) * across
+            };
+            row(top) + (row(bottom) - row(top)) * down
+        };
+        let rows = 0..if self.data.is_empty() { 0 } else { height };
+        rows.flat_map(|y| (0..width).map(move |x| value(x, y)))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_are_stretched_between_the_middles_of_their_pixels() {
+        let plane = Plane::new(2, 2, vec![0.0, 1.0, 2.0, 3.0]).unwrap();
+        assert_eq!(plane.stretched(2, 2), plane.data);
+        assert_eq!(plane.stretched(1, 1), [1.5]);
+        let wide = plane.stretched(4, 1);
+        assert_eq!(wide, [1.0, 1.25, 1.75, 2.0]);
+        assert!(Plane::new(0, 0, vec![]).unwrap().stretched(3, 3).is_empty());
+    }
 }

@@ -49,6 +49,7 @@
 //!         intensity: None,
 //!     }],
 //!     settings: Settings { map: 256, ..Settings::usual(Technique::PacketContour) },
+//!     budget_map: None,
 //!     notes: Vec::new(),
 //! };
 //! let options = RenderOptions {

@@ -1,6 +1,7 @@
 //! What will run, in which sizes, and what is left out and why: a pure function of the shot, of what is
 //! asked for and of the device's limits. What is recorded equals what is planned.
 
+mod budget;
 mod camera;
 mod clip;
 mod graph;
@@ -26,6 +27,7 @@ use camera::Frustum;
 use light::{Draft, Numbering, Placed};
 use survey::{LightCoverage, survey};
 
+pub use budget::Budget;
 pub use host::{HostFrame, plan_for_host};
 pub use light::{LightPlan, Lighting, ViewPlan, ViewSet};
 pub use memory::PlannedResource;
@@ -61,6 +63,11 @@ pub struct Plan {
     pub loop_turns: u32,
     /// [pixel] Width and height of a packet.
     pub packet: (u32, u32),
+    pub budget: Budget,
+    /// Pixels have several samples, for the picture.
+    pub multisampled: bool,
+    /// Such a sample may take the visibility of a neighbour.
+    pub neighbour_visibility: bool,
     /// The scene has textures that the frame needs.
     pub textured: bool,
     /// The scene has alpha-masked triangles.
@@ -95,7 +102,12 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     shot.validate()?;
     let frustum = Frustum::new(shot);
     let mut plan = Plan {
-        textured: !shot.scene.textures.is_empty() && (outputs.picture || shot.scene.has_masked()),
+        textured: reads_textures(shot, outputs),
+        multisampled: outputs.picture && shot.settings.multisample > 1,
+        budget: Budget {
+            mapped: shot.budget_map.is_some(),
+            ..Budget::new(&shot.settings)
+        },
         masked: shot.scene.has_masked(),
         tells_casters: shot.scene.tells_casters(),
         orthographic: frustum.orthographic,
@@ -122,6 +134,13 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     plan.list_omissions(shot);
     plan.check(limits)?;
     Ok(plan)
+}
+
+/// Whether the frame needs the scene's textures: for the picture, for holes, or for what hides shadows.
+fn reads_textures(shot: &Shot, outputs: Outputs) -> bool {
+    let masks_budgets = shot.settings.budget_masking < 1.0 && shot.settings.budget.is_some();
+    let wanted = outputs.picture || shot.scene.has_masked() || masks_budgets;
+    wanted && !shot.scene.textures.is_empty()
 }
 
 impl Plan {
@@ -198,6 +217,9 @@ impl Plan {
             map: 0,
             loop_turns: limits.loop_turns,
             packet: settings.window(),
+            budget: Budget::new(settings),
+            multisampled: false,
+            neighbour_visibility: settings.neighbour_visibility,
             textured: false,
             masked: false,
             orthographic: false,

@@ -177,6 +177,18 @@ shared_constants! {
     CONE_COUNT: uint = 24;
     /// No matter which cone; they are numbered from 1.
     ALL_CONES: uint = 0;
+    /// [micro-occluder] Least budget along a side of a kernel.
+    LEAST_BUDGET: uint = 4;
+    /// Visibility comes from the shadow map itself, whole.
+    QUALITY_FINEST: uint = 0;
+    /// Visibility comes from the finer, or from the coarser, of the two levels round a pixel's level of quality, as far as that
+    /// is in it [Schwarz08 §4.2].
+    QUALITY_FINER: uint = 1;
+    QUALITY_COARSER: uint = 2;
+    /// Of an entry of the list of pixels: which of the two is left to be integrated, where that is not both. Images have at
+    /// most 2³⁰ pixels.
+    LISTED_FINER: uint = 0x40000000;
+    LISTED_COARSER: uint = 0x80000000;
     /// A host's normals are stored as they are, each component from −1 to 1.
     NORMAL_SIGNED: uint = 0;
     /// They are moved to [0, 1].
@@ -414,6 +426,8 @@ shared! {
         edges_extracted: uvec2,
         /// Depths and depth bounds that visibility passes read.
         samples_read: uvec2,
+        /// [level] That penumbra pixels' budgets take, before they are smoothed, in sum.
+        coarse_levels: uint,
     }
 
     /// What a pass is told when it is recorded.

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::image::Plane;
 use crate::scene::{AreaLight, Camera, MAX_COORDINATE, Scene};
 use crate::technique::Settings;
 use crate::{Error, Result};
 
+mod budget_map;
 #[cfg(feature = "cli")]
 mod built_in;
 mod load;
@@ -25,6 +27,8 @@ pub struct Shot {
     pub height: u32,
     pub lights: Vec<AreaLight>,
     pub settings: Settings,
+    /// [0, 1] Shares of the settings' budget that pixels have [Schwarz08 §4.2], stretched over the image; none = all of it.
+    pub budget_map: Option<Arc<Plane>>,
     /// What the shot file asked for and is ignored, a sentence each (`Scene::notes` are the scene's).
     pub notes: Vec<String>,
 }
@@ -52,7 +56,7 @@ impl Shot {
 
     /// # Errors
     /// [`Error::Invalid`] when the shot cannot be rendered: no triangles, no light, or a camera, size,
-    /// light or setting that makes no sense.
+    /// light, budget map or setting that makes no sense.
     pub fn validate(&self) -> Result<()> {
         if self.scene.triangles.is_empty() {
             return Err(Error::Invalid("the scene holds no triangles".into()));
@@ -69,6 +73,13 @@ impl Shot {
             return Err(Error::Invalid("there is no light".into()));
         }
         self.lights.iter().try_for_each(AreaLight::validate)?;
+        let is_share = |share: &f32| (0.0..=1.0).contains(share);
+        let are_shares = |map: &Plane| !map.data.is_empty() && map.data.iter().all(is_share);
+        if !self.budget_map.as_deref().is_none_or(are_shares) {
+            return Err(Error::Invalid(
+                "the budget map has no pixels, or some that are not from 0 to 1".into(),
+            ));
+        }
         self.settings.validate()
     }
 }

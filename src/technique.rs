@@ -23,7 +23,7 @@ mod pixel_contour;
 mod reference_maps;
 mod shadow_width;
 
-use crate::frame::kernel::{CLASSIFY, KERNELS};
+use crate::frame::kernel::{CLASSIFY, KERNELS, SMOOTH_QUALITY, blended};
 use crate::frame::{Domain, Pass, Resource, Work};
 use crate::scene::AreaLight;
 use crate::shared::FRONT_REACH;
@@ -152,6 +152,8 @@ pub struct Recipe {
     pub windows: bool,
     /// [layer] Of the shadow map that are peeled off and kept; 0 = the map itself is read.
     pub layers: u32,
+    /// [level] Coarser than the map that visibility is blended from; 0 = no budget limits quality.
+    pub coarse_levels: u32,
     /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.
     pub words: u32,
     /// [turn] Of loops for each cell of the map, at most, where a driver bounds them.
@@ -178,6 +180,25 @@ impl Recipe {
             passes: once([KERNELS, CLASSIFY, pass]),
             ..Self::default()
         }
+    }
+
+    /// As it is where a budget of micro-occluders limits quality [Schwarz08 §4.2]: levels of quality are found with the kernels
+    /// and smoothed, and visibility is integrated in the two that a pixel's lies between.
+    fn within_budget(mut self, settings: &Settings) -> Self {
+        let Some(levels) = settings.coarse_levels() else {
+            return self;
+        };
+        self.coarse_levels = levels;
+        let passes = self.passes.into_iter().flat_map(|(pass, level)| {
+            let passes = match pass.domain() {
+                Some(Domain::PacketList | Domain::PixelList) => blended(pass).to_vec(),
+                _ if pass == KERNELS => [&[pass][..], &SMOOTH_QUALITY].concat(),
+                _ => vec![pass],
+            };
+            passes.into_iter().map(move |pass| (pass, level))
+        });
+        self.passes = passes.collect();
+        self
     }
 
     /// A pass over all pixels that tests samples of the map.
@@ -214,6 +235,19 @@ fn once(passes: impl IntoIterator<Item = Pass>) -> Vec<(Pass, u32)> {
 /// The parts of a light that have views of their own; `settings`: as they run for it.
 pub fn parts(light: &AreaLight, settings: &Settings) -> Vec<Part> {
     settings.technique.method().parts(light, settings)
+}
+
+/// The flags of knobs that limit quality.
+fn budget_knobs(settings: &Settings) -> &'static [&'static str] {
+    match settings.budget {
+        None => &["budget"],
+        Some(_) => &[
+            "budget",
+            "budget-falloff",
+            "budget-masking",
+            "no-query-growth",
+        ],
+    }
 }
 
 /// Of a technique's variants: its usual settings with a change.

@@ -87,7 +87,7 @@ fn check_kernels(traces: &Traces, receivers: &[Seen], hierarchy: &Hierarchy) -> 
             status: KERNEL_NONE,
             ..Kernel::default()
         };
-        let of = |receiver| kernel_of(view, oblique, &receiver, &map, hierarchy);
+        let of = |receiver| kernel_of(view, oblique, &receiver, &map, hierarchy, None);
         let wanted = receiver.map_or(none, of);
         let pixel = (i as u32 % SIZE, i as u32 / SIZE);
         assert_eq!(*found, wanted, "pixel {pixel:?}, {receiver:?}");

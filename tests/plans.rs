@@ -81,6 +81,7 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
             intensity: None,
         }],
         settings: Settings::default(),
+        budget_map: None,
         notes: Vec::new(),
     }
 }
@@ -155,6 +156,35 @@ fn what_drivers_leave_over_is_planned_for_such_drivers_alone() {
     };
     let pixels = |limits| passes(limits).contains(&"pixel_visibility");
     assert!(pixels(&LIMITS) && !pixels(&endless));
+}
+
+#[test]
+fn a_budget_plans_coarser_levels_and_two_of_each_visibility() {
+    let limited = with(scene("plate"), |settings| {
+        settings.split = 1;
+        settings.budget = Some(12);
+        settings.budget_falloff = 0.5;
+    });
+    check("plate-budget", &limited, EVERYTHING, false);
+}
+
+#[test]
+fn samples_of_a_pixel_are_planned_for_pictures_alone() {
+    let four = with(scene("plate"), |settings| {
+        settings.split = 1;
+        settings.multisample = 4;
+    });
+    check("plate-multisample", &four, EVERYTHING, false);
+    let planned = plan(&four, Outputs { picture: false }, &LIMITS).expect("a plan");
+    assert!(
+        planned
+            .omissions
+            .iter()
+            .any(|left| left.what == "samples of a pixel")
+    );
+    let one = with(four, |settings| settings.multisample = 1);
+    let single = plan(&one, Outputs { picture: false }, &LIMITS).expect("a plan");
+    assert_eq!(planned.memory_bytes(), single.memory_bytes());
 }
 
 #[test]

@@ -434,3 +434,40 @@ fn names_are_the_same_everywhere() {
     check(Technique::ALL);
     assert_eq!(Technique::PacketContour.to_string(), "packet-contour");
 }
+
+#[test]
+fn a_budget_map_is_an_image_of_shares() {
+    let mut json = example();
+    json["budget_map"] = "maps/shares.png".into();
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("maps")).unwrap();
+    write(&folder, "shot.json", json.to_string().as_bytes());
+    let texels = [[255; 4], [0, 0, 0, 255], [51, 51, 51, 255]];
+    write(&folder, "maps/shares.png", &png(3, 1, &texels));
+    let file = folder.path().join("shot.json");
+    let shares = |shot: Shot| shot.budget_map.unwrap().data.clone();
+    let shot = Shot::load(&file, &Overrides::default()).unwrap();
+    assert!(
+        shot.scene
+            .files
+            .contains(&folder.path().join("maps/shares.png"))
+    );
+    assert_eq!(shares(shot), [1.0, 0.0, 0.2]);
+    // The caller's goes before the file's.
+    write(&folder, "other.png", &png(1, 1, &[[255; 4]]));
+    let other = |name: &str| Overrides {
+        budget_map: Some(folder.path().join(name)),
+        ..Overrides::default()
+    };
+    assert_eq!(
+        shares(Shot::load(&file, &other("other.png")).unwrap()),
+        [1.0]
+    );
+    for (name, reason) in [
+        ("shot.json", "is not an image of budgets"),
+        ("none.png", "none.png"),
+    ] {
+        let error = Shot::load(&file, &other(name)).unwrap_err().to_string();
+        assert!(error.contains(reason), "{error}");
+    }
+}

@@ -32,6 +32,13 @@ fn siblings() -> Vec<(&'static str, Settings)> {
     };
     vec![
         ("packet-contour", usual(Technique::PacketContour)),
+        (
+            "packet-contour within a budget",
+            Settings {
+                budget: Some(5),
+                ..usual(Technique::PacketContour)
+            },
+        ),
         ("pixel-contour", usual(Technique::PixelContour)),
         (
             "pixel-contour hierarchical",
@@ -45,6 +52,13 @@ fn siblings() -> Vec<(&'static str, Settings)> {
             "micropatch with gaps",
             Settings {
                 gap_filling: false,
+                ..usual(Technique::Micropatch)
+            },
+        ),
+        (
+            "micropatch within a budget",
+            Settings {
+                budget: Some(5),
                 ..usual(Technique::Micropatch)
             },
         ),
@@ -64,6 +78,14 @@ fn siblings() -> Vec<(&'static str, Settings)> {
             "bitmask 16 jittered, 2 layers",
             Settings {
                 layers: 2,
+                ..usual(Technique::Bitmask)
+            },
+        ),
+        (
+            "bitmask within a budget",
+            Settings {
+                budget: Some(5),
+                budget_falloff: 0.5,
                 ..usual(Technique::Bitmask)
             },
         ),

@@ -1,11 +1,11 @@
 // A walk through the hierarchy that the lanes of a subgroup share: each looks at a node of its own, and what stays open goes back
 // to a stack in shared memory, in the order of the lanes, so that a walk repeats to the bit. It finds the cells that
-// hierarchical_contour.glsl finds. Any width of subgroup will do. Needs kernel.glsl, packet_bounds.glsl and budget.glsl.
+// hierarchical_contour.glsl finds. Any width of subgroup will do. Needs kernel.glsl, map.glsl, packet_bounds.glsl and
+// budget.glsl.
 
 #extension GL_KHR_shader_subgroup_ballot : require
 
-#include "quadtree.glsl"
-#include "hierarchy.glsl"
+#include "nodes.glsl"
 
 // [node] Enough for a walk of twelve levels, of which each leaves three nodes for later, for any width from four on.
 const uint STACK_PER_LANE = 16u;
@@ -60,11 +60,10 @@ bool at_end(SharedWalk walk) { return !has_nodes(walk) && walk.found == 0u; }
 
 // Over a packet's kernel, from nodes of the lowest level that is as large, as far as levels are built.
 SharedWalk shared_walk_over(Packet packet, int level_count) {
+    int level = root_level(packet, level_count);
     ivec2 first = unpacked(packet.first);
     ivec2 last = unpacked(packet.last);
-    ivec2 side = last - first + 1;
-    int level = min(level_covering(max(side.x, side.y)), level_count - 1);
-    ivec2 origin = aligned(first, level);
+    ivec2 origin = first_root(packet, level);
     uvec2 count = uvec2((last - origin) >> (level + 1)) + 1u;
     return SharedWalk(first, last, origin, count, 0u, level + 1, 0u, 0u);
 }
@@ -95,7 +94,7 @@ void step_down(View view, Packet packet, inout SharedWalk walk) {
     int side = 1 << level;
     ivec2 node = cell_of(parent) + ivec2(lane & 1u, lane >> 1 & 1u) * side;
     open = open && all(lessThanEqual(node, walk.last)) && all(greaterThan(node + side, walk.first));
-    vec2 bounds = hierarchy_fetch(view, min(node, walk.last), level);
+    vec2 bounds = bounds_of(view, min(node, walk.last), level);
     nodes_visited += uint(open);
     samples_read += uint(open);
     open = open && may_differ(bounds, limits_in(packet, vec2(node), vec2(node + side)))
@@ -111,7 +110,8 @@ void step_down(View view, Packet packet, inout SharedWalk walk) {
     subgroupBarrier();
 }
 
-// Walks at least a step, and until there is a cell for each lane, or no node left. Gives each lane one of them; false: there is none for it.
+// Walks at least a step, and until there is a cell for each lane, or no node left. Gives each lane one of them; false: there is
+// none for it.
 bool next_cells(View view, Packet packet, inout SharedWalk walk, out ivec2 cell) {
     do {
         step_down(view, packet, walk);

@@ -5,8 +5,7 @@
 //
 // DEVIATION [Yang09 §4.2]: a large kernel starts from up to 4×4 roots instead of one (`ROOT_LEVELS`).
 
-#include "quadtree.glsl"
-#include "hierarchy.glsl"
+#include "nodes.glsl"
 #include "walk.glsl"
 #include "packet_bounds.glsl"
 
@@ -17,14 +16,10 @@ bool is_pruned(View view, Packet packet, ivec2 node, int side, vec2 bounds);
 // The pass knows the corners of a cell that occlude, and whether they do for all of the packet's pixels [Yang09 eq. 3].
 uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed);
 
-// [cell] Where the first root of a walk over the packet's kernel begins.
-ivec2 first_root(Packet packet, int top) { return aligned(unpacked(packet.first), top); }
-
-// A walk over the packet's kernel, from nodes of the lowest level that is as large, as far as levels are built. Later rounds go
-// on where the one before stood.
+// A walk over the packet's kernel. Later rounds go on where the one before stood. It ends at the cells of the level of quality
+// that is read [Yang09 §6].
 Walk walk_over(Packet packet, uint level_count, Progress from) {
-    ivec2 side = unpacked(packet.last) - unpacked(packet.first) + 1;
-    int top = min(level_covering(max(side.x, side.y)), int(level_count) - 1);
+    int top = root_level(packet, int(level_count));
     Walk walk = walk_from(first_root(packet, top), top);
     if (!is_first_round()) walk = resumed_walk(from, top);
     return walk;
@@ -38,7 +33,7 @@ bool next_cell(View view, Packet packet, inout Walk walk, inout ivec2 cell) {
     bool found = false;
     SEARCH_WHILE(!found && !walk.ended) {
         int side = 1 << walk.level;
-        vec2 bounds = hierarchy_fetch(view, min(walk.node, last), walk.level);
+        vec2 bounds = bounds_of(view, min(walk.node, last), walk.level);
         vec4 limits = limits_in(packet, vec2(walk.node), vec2(walk.node + side));
         // Nodes stand where the level has them, not where the kernel begins and ends: some hang over.
         bool inside = all(lessThanEqual(walk.node, last)) && all(greaterThan(walk.node + side, first));

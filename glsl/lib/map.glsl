@@ -3,9 +3,14 @@
 TEXTURE(shadow_map);
 TEXTURE(layers);
 
-// The depth that a layer of the map holds: 0 is nearest to the light.
+#include "coarse_fetch.glsl"
+
+// The depth that a layer of the map holds: 0 is nearest to the light. Or that a texel of the level of quality that is read holds.
 float depth_at(uint layer, ivec2 texel) {
-    return LAYERS > 1u ? texelFetch(layers, ivec3(texel, layer), 0).x : texelFetch(shadow_map, texel, 0).x;
+    float depth = 0.0;
+    if (reads_coarse_map()) depth = coarse_texel(texel, level_of_quality).y;
+    else depth = LAYERS > 1u ? texelFetch(layers, ivec3(texel, layer), 0).x : texelFetch(shadow_map, texel, 0).x;
+    return depth;
 }
 
 // The samples at a dual cell's corners, counter-clockwise from (0, 0).

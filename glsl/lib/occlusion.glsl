@@ -6,6 +6,6 @@ BUFFER(occlusion);
 
 // A view's word on a pixel; occluded: its weight times the share of the sub-light that is occluded.
 void add_occluded(uint pixel, float occluded) {
-    if (ACCUMULATE) occlusion[pixel] += occluded;
+    if (ACCUMULATE || QUALITY != QUALITY_FINEST) occlusion[pixel] += occluded;
     else occlusion[pixel] = occluded;
 }

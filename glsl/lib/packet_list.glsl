@@ -12,6 +12,7 @@
 #include "occlusion.glsl"
 #include "count.glsl"
 #include "radial.glsl"
+#include "blend.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(constant_id = 10) const uint SLOTS = 1u;  // [pixel] integrated by one invocation
@@ -51,6 +52,7 @@ vec2 kappa;
 void keep_pixel(View view, Fit fit, uint slot, uint index) {
     SurfacePoint point = surface_at(pixel_at(index));
     Receiver receiver = project(view, fit, point.position - view.center, point.normal, point.error);
+    receiver = at_level(view, receiver);
     is_kept[slot] = true;
     slot_end = slot + 1u;
     pixel_index[slot] = index;
@@ -64,21 +66,34 @@ void keep_pixel(View view, Fit fit, uint slot, uint index) {
     sum[slot] = is_first_round() ? 0.0 : partial[index];
 }
 
+// Makes this invocation read the level that the pass reads for a packet, whose pixels have the same two.
+void choose_level(View view, uvec2 place) {
+    uint index;
+    if (QUALITY == QUALITY_FINEST) return;
+    [[dont_unroll]] for (uint i = 0u; i < PIXELS_PER_PACKET; ++i)
+        if (is_penumbra(place, i, index)) choose_level(view, index);
+}
+
+// Whether pixel `i` of a packet is integrated in the level that the pass reads.
+bool is_in_level(uvec2 place, uint i, out uint index) {
+    return is_penumbra(place, i, index) && share_of_level(index) > 0.0;
+}
+
 // Keeps what `lane` has to integrate of the packet at a place of the grid. False: that is nothing.
 bool keep_pixels(View view, Fit fit, uvec2 place, uint lane) {
-    kappa = fit.near / (fit.focal * view.half_size);
+    kappa = fit.near / (fit.focal * view.half_size) * float(1 << level_of_quality);
     uint index;
     if (LANES) {
-        bool wanted = is_penumbra(place, lane, index);
+        bool wanted = is_in_level(place, lane, index);
         if (wanted) keep_pixel(view, fit, 0u, index);
         return wanted;
     }
     // Unrolled, it would be most of what drivers compile.
     [[dont_unroll]] for (uint i = 0u; i < SLOTS; ++i) {
         is_kept[i] = false;
-        if (is_penumbra(place, i, index)) keep_pixel(view, fit, i, index);
+        if (is_in_level(place, i, index)) keep_pixel(view, fit, i, index);
     }
-    return true;
+    return QUALITY == QUALITY_FINEST || slot_end > 0u;
 }
 
 Receiver receiver_of(uint slot) {
@@ -98,14 +113,14 @@ Progress sum_kernel(View view, Packet packet, Progress from, out bool agreed);
 // What a pixel's sum over all edges says.
 void conclude(View view, uint slot) {
     float hidden = sum[slot] + centre_area(view, receiver_of(slot), 0u);
-    add_occluded(pixel_index[slot], view.weight * share_of(hidden, view.area));
+    add_occluded(pixel_index[slot], share_of_level(pixel_index[slot]) * view.weight * share_of(hidden, view.area));
 }
 
 // Whether `lane` is the first of a packet's that has a pixel to integrate, and counts for all.
 bool is_leader(uvec2 place, uint lane) {
     bool first = true;
     uint index;
-    for (uint i = 0u; i < lane; ++i) first = first && !is_penumbra(place, i, index);
+    for (uint i = 0u; i < lane; ++i) first = first && !is_in_level(place, i, index);
     return first;
 }
 
@@ -121,7 +136,9 @@ void main() {
     View view = views[push.index];
     Packet packet = packets[entry];
     uvec2 place = uvec2(packet.index % packet_grid().x, packet.index / packet_grid().x);
+    choose_level(view, place);
     if (!keep_pixels(view, fits[push.index], place, lane)) return;
+    packet = at_level(view, packet);
 
     bool agreed;
     Progress next = sum_kernel(view, packet, resumed(at), agreed);
@@ -132,7 +149,7 @@ void main() {
         if (!is_kept[i]) continue;
         if (suspended) partial[pixel_index[i]] = sum[i];
         else if (complete) conclude(view, i);
-        else append_pixel(pixel_index[i]);
+        else append_pixel(pixel_index[i] | left_to_list());
     }
     if (suspended) reach_packets(push.level + 1u, group);
     if (!suspended) next = ENDED;

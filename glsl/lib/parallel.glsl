@@ -2,7 +2,7 @@
 // (scene/light/sun.rs): with the height h of a point over the plane and the place x where its ray meets it, relative to
 // `view.center`, the point is at L / h (x + L n). It keeps lines and planes. Needs `dot_exact`.
 
-layout(constant_id = 53) const bool PARALLEL = false;  // the light is a sun
+layout(constant_id = 60) const bool PARALLEL = false;  // the light is a sun
 
 // [scene units] How high a point is over the plane.
 float height_of(View view, vec3 to_point) { return -dot_exact(to_point, view.light_n); }

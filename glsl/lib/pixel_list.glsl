@@ -8,6 +8,7 @@
 #include "resume.glsl"
 #include "occlusion.glsl"
 #include "count.glsl"
+#include "blend.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
@@ -20,7 +21,7 @@ readonly BUFFER(pixels);
 
 #include "surface.glsl"
 
-// The pixel that this invocation works on.
+// The pixel that this invocation works on, at the level of quality that the pass reads.
 struct ListedPixel {
     uint index;
     View view;
@@ -47,9 +48,20 @@ float hidden_share();
 
 ListedPixel listed_pixel(uint index) {
     View view = views[push.index];
+    choose_level(view, index);
     SurfacePoint point = surface_at(pixel_at(index));
     Receiver receiver = project(view, fits[push.index], point.position - view.center, point.normal, point.error);
-    return ListedPixel(index, view, receiver, unpacked(kernels[index].first), unpacked(kernels[index].last));
+    Cells cells = at_level(Cells(unpacked(kernels[index].first), unpacked(kernels[index].last), true));
+    return ListedPixel(index, view, at_level(view, receiver), cells.first, cells.last);
+}
+
+// The pixel of a list's entry, which may be left to one of two levels of quality alone. False: nothing of it is this pass's.
+bool is_for_pass(inout uint entry) {
+    if (QUALITY == QUALITY_FINEST) return true;
+    uint other = QUALITY == QUALITY_FINER ? LISTED_COARSER : LISTED_FINER;
+    bool left_to_other = (entry & other) != 0u;
+    entry &= ~(LISTED_FINER | LISTED_COARSER);
+    return !left_to_other && share_of_level(entry) > 0.0;
 }
 
 void main() {
@@ -57,7 +69,9 @@ void main() {
     uint entry = group * GROUP_SIZE + gl_LocalInvocationID.x;
     if (entry >= lists[push.index].pixel_count) return;
     if (is_finished(entry)) return;
-    pixel = listed_pixel(pixels[entry]);
+    uint listed = pixels[entry];
+    if (!is_for_pass(listed)) return;
+    pixel = listed_pixel(listed);
     uint first_word = pixel.index * SUM_WORDS;
     for (uint i = 0u; i < SUM_WORDS; ++i) sum[i] = is_first_round() ? SUM(0) : partial[first_word + i];
 
@@ -65,7 +79,7 @@ void main() {
 
     bool complete = next.next == FINISHED;
     if (complete) {
-        add_occluded(pixel.index, pixel.view.weight * clamp(hidden_share(), 0.0, 1.0));
+        add_occluded(pixel.index, share_of_level(pixel.index) * pixel.view.weight * clamp(hidden_share(), 0.0, 1.0));
     } else if (!is_last_round()) {
         for (uint i = 0u; i < SUM_WORDS; ++i) partial[first_word + i] = sum[i];
         reach_pixels(push.level + 1u, group);

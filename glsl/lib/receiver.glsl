@@ -2,7 +2,7 @@
 // occluder meets the light (algorithm.md §1, §8). Passes that project a receiver anew come to the same bits.
 
 struct Receiver {
-    // [texel] Its projection, t_p. Never on a line of contour vertices: see `project`.
+    // [texel] Its projection, t_p. Never on a line of contour vertices: see `beside_vertices`.
     vec2 t;
     // Depth near / z.
     float d;
@@ -28,7 +28,7 @@ float dot_exact(vec3 a, vec3 b) {
 #include "parallel.glsl"
 #include "cone.glsl"
 
-layout(constant_id = 54) const bool CONES = false;  // the view's receivers are those in its cone
+layout(constant_id = 61) const bool CONES = false;  // the view's receivers are those in its cone
 
 // A direction or relative position in the frame of the view's face.
 vec3 to_face(View view, vec3 world) {
@@ -64,15 +64,19 @@ bool in_view(View view, vec3 position, vec3 normal) {
     return sum > dot_exact(normal, to_point);
 }
 
+// A place on the map beside all contour vertices: these lie on multiples of ½. One ulp beside them, no vertex is ever exactly at
+// the light's centre, where it would have no direction.
+vec2 beside_vertices(vec2 t) {
+    if (fract(2.0 * t.x) == 0.0) t.x = uintBitsToFloat(floatBitsToUint(t.x) + 1u);
+    return t;
+}
+
 // error: [scene units] by how much the point may be off, beyond what 32 bits round off.
 Receiver project(View view, Fit fit, vec3 to_point, vec3 normal, float error) {
     Receiver receiver;
     precise vec3 p = to_face(view, mapped(view, to_point));
     precise float inverse_z = 1.0 / p.z;
     precise vec2 t = fit.focal * (p.xy * inverse_z) + fit.center;
-    // Contour vertices lie on multiples of ½. One ulp beside them, no vertex is ever exactly at the
-    // light's centre, where it would have no direction.
-    if (fract(2.0 * t.x) == 0.0) t.x = uintBitsToFloat(floatBitsToUint(t.x) + 1u);
     precise float d = fit.near * inverse_z;
 
     vec3 n = to_face(view, mapped_normal(view, to_point, normal));
@@ -86,7 +90,7 @@ Receiver project(View view, Fit fit, vec3 to_point, vec3 normal, float error) {
     precise float misplaced = d * min(error / max(abs(height), 1e-30), 1.0);
     precise float biased = d + slope_bias + rounding + misplaced;
 
-    receiver.t = t;
+    receiver.t = beside_vertices(t);
     receiver.d = d;
     receiver.biased = biased;
     receiver.behind = !(height < 0.0);

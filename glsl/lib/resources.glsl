@@ -58,11 +58,15 @@
 #define RESOURCE_triangle_casts ARRAY(43, uint, triangle_casts)
 #define RESOURCE_shadow_map(AS) AS(27, texture2D, image2D, shadow_map)
 #define RESOURCE_layers(AS) AS(28, texture2DArray, image2DArray, layers)
+#define RESOURCE_coarse_map ARRAY(44, vec2, coarse_map)
 #define RESOURCE_hierarchy(AS) AS(29, texture2DArray, image2DArray, hierarchy)
 
 // From kernels to visibility.
 #define RESOURCE_kernels ARRAY(30, Kernel, kernels)
-#define RESOURCE_windows ARRAY(56, Window, windows)
+#define RESOURCE_windows ARRAY(63, Window, windows)
+#define RESOURCE_budgets ARRAY(45, float, budgets)
+#define RESOURCE_quality ARRAY(46, float, quality)
+#define RESOURCE_quality_rows ARRAY(47, float, quality_rows)
 #define RESOURCE_costs STRUCT(31, Costs, costs)
 #define RESOURCE_packets ARRAY(32, Packet, packets)
 #define RESOURCE_pixels ARRAY(33, uint, pixels)

@@ -63,6 +63,7 @@ fn shot_of(scene: &Arc<Scene>) -> Shot {
         height: SIZE,
         lights: scene.lights.clone(),
         settings: Settings::default(),
+        budget_map: None,
         notes: Vec::new(),
         scene: scene.clone(),
     }

@@ -32,6 +32,10 @@ pub struct ShotArgs {
     /// Which camera of the glTF, counted from 0; a shot file's own camera goes first [default: 0]
     #[arg(long, value_name = "N")]
     camera: Option<usize>,
+    /// With --budget: an image (PNG, JPEG or WebP), stretched over the picture, of the share of it that is left: white all
+    /// [default: the shot file's "budget_map"]
+    #[arg(long, value_name = "FILE")]
+    budget_map: Option<PathBuf>,
     #[command(flatten)]
     load: LoadArgs,
 }
@@ -61,6 +65,7 @@ impl ShotArgs {
             sun_angle_deg: self.sun_angle.map(|angle| angle + 0.0),
             scene_index: self.scene,
             camera_index: self.camera,
+            budget_map: self.budget_map.clone(),
             ..self.load.overrides()
         }
     }

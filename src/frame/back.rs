@@ -12,6 +12,9 @@ const RESOLVE: Pass = Pass::dispatch("resolve", "resolve.comp", Domain::Image);
 /// The picture of all lights.
 pub const SHADE: Pass = Pass::dispatch("shade", "shade.comp", Domain::Image);
 
+/// The same of pixels of several samples [Schwarz08 §7].
+const SHADE_SAMPLES: Pass = Pass::dispatch("shade", "shade_samples.comp", Domain::Image);
+
 /// The visibility into the image that a host has lent.
 const EXPORT: Pass = Pass::new(
     "export",
@@ -34,8 +37,12 @@ pub fn light_passes() -> impl Iterator<Item = Pass> {
 }
 
 /// After the lights.
-pub fn passes(front: Front, picture: bool) -> impl Iterator<Item = Pass> {
-    let shade = picture.then_some(SHADE);
+pub fn passes(front: Front, picture: bool, multisampled: bool) -> impl Iterator<Item = Pass> {
+    let shade = match multisampled {
+        true => SHADE_SAMPLES,
+        false => SHADE,
+    };
+    let shade = picture.then_some(shade);
     shade
         .into_iter()
         .chain((front != Front::Drawn).then_some(EXPORT))

@@ -22,6 +22,38 @@ const GBUFFER: Pass = Pass::new(
     },
 );
 
+/// The same of each of a pixel's samples.
+const GBUFFER_SAMPLES: Pass = Pass::new(
+    "gbuffer",
+    Work::Draw {
+        vertex: "gbuffer.vert",
+        fragment: Some("gbuffer.frag"),
+        what: Drawn::Surface,
+        into: Target::Images {
+            colors: &["position_samples", "normal_samples", "albedo_samples"],
+            depth: Some("depth_samples"),
+            extent: Extent::Image,
+            blend: Blend::Replace,
+        },
+    },
+);
+
+/// The sample that stands for its pixel [Schwarz08 §7].
+const PICK_SAMPLE: Pass = Pass::new(
+    "pick_sample",
+    Work::Draw {
+        vertex: "whole_image.vert",
+        fragment: Some("pick_sample.frag"),
+        what: Drawn::WholeImage,
+        into: Target::Images {
+            colors: &["position_world", "normal_world", "albedo"],
+            depth: None,
+            extent: Extent::Image,
+            blend: Blend::Replace,
+        },
+    },
+);
+
 /// A host's transforms and lights of this frame.
 const UPDATE: Pass = Pass::new("update", Work::Upload);
 
@@ -36,8 +68,9 @@ const IMPORT_POSITIONS: Pass = IMPORT_DEPTHS.with(&[("GIVEN_POSITIONS", 1)]);
 const GATHER: Pass = Pass::dispatch("gather", "gather.comp", Domain::Instances).lent(Lent::Mesh);
 
 /// What comes before the lights.
-pub fn passes(front: Front, casters: Casters) -> impl Iterator<Item = Pass> {
+pub fn passes(front: Front, multisampled: bool, casters: Casters) -> impl Iterator<Item = Pass> {
     let surface: &[Pass] = match front {
+        Front::Drawn if multisampled => &[GBUFFER_SAMPLES, PICK_SAMPLE],
         Front::Drawn => &[GBUFFER],
         Front::Imported(Surface::Depths) => &[UPDATE, IMPORT_DEPTHS],
         Front::Imported(Surface::Positions) => &[UPDATE, IMPORT_POSITIONS],
@@ -71,7 +104,19 @@ pub const RESOURCES: &[Resource] = &[
         Shape::Buffer(s.inventory.texels).when(s.textured)
     }),
     Resource::new("camera_depth", |s| {
-        Shape::image(ImageKind::Depth, s.image).when(s.is_drawn())
+        Shape::image(ImageKind::Depth, s.image).when(s.is_drawn() && !s.multisampled)
+    }),
+    Resource::new("depth_samples", |s| {
+        Shape::image(ImageKind::DepthSamples, s.image).when(s.multisampled)
+    }),
+    Resource::new("position_samples", |s| {
+        Shape::image(ImageKind::VectorSamples, s.image).when(s.multisampled)
+    }),
+    Resource::new("normal_samples", |s| {
+        Shape::image(ImageKind::VectorSamples, s.image).when(s.multisampled)
+    }),
+    Resource::new("albedo_samples", |s| {
+        Shape::image(ImageKind::ColorSamples, s.image).when(s.multisampled)
     }),
     Resource::new("position_world", |s| {
         Shape::image(ImageKind::Vector, s.image)

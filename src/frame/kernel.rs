@@ -3,7 +3,10 @@
 
 use super::pass::{Domain, Pass, Work};
 use super::resource::{Resource, Shape, Sizes};
-use crate::shared::{Kernel, Lists, Packet, Progress, Round, TILE_SIZE, WINDOW_PIXELS_MIN, Window};
+use crate::shared::{
+    Kernel, Lists, Packet, Progress, QUALITY_COARSER, QUALITY_FINER, Round, TILE_SIZE,
+    WINDOW_PIXELS_MIN, Window,
+};
 
 /// Most windows of a tile.
 const WINDOWS_PER_TILE: u64 = (TILE_SIZE * TILE_SIZE / WINDOW_PIXELS_MIN) as u64;
@@ -13,12 +16,31 @@ const CLEAR_LISTS: Pass = Pass::new("clear_lists", Work::Clear(&["lists", "round
 /// The kernels of all pixels [GBP06, SS07; Yang09 eq. 1].
 pub const KERNELS: Pass = Pass::dispatch("kernels", "kernels.comp", Domain::Pixels);
 
+/// Each pixel's budget, where these differ [Schwarz08 §4.2].
+const BUDGETS: Pass = Pass::dispatch("budgets", "budgets.comp", Domain::Image);
+
+/// Levels of quality smoothed along rows, then along columns [Schwarz08 §4.2].
+pub const SMOOTH_QUALITY: [Pass; 2] = [
+    SMOOTH_ALONG.with(&[("COLUMNS", 0)]),
+    SMOOTH_ALONG.with(&[("COLUMNS", 1)]),
+];
+const SMOOTH_ALONG: Pass = Pass::dispatch("smooth_quality", "smooth_quality.comp", Domain::Pixels);
+
+/// A pass that integrates visibility, in the finer and in the coarser of the levels between which it is blended.
+pub const fn blended(pass: Pass) -> [Pass; 2] {
+    [
+        pass.with(&[("QUALITY", QUALITY_FINER)]),
+        pass.with(&[("QUALITY", QUALITY_COARSER)]),
+    ]
+}
+
 /// Packets and pixels to their lists [Yang09 §4.3].
 pub const CLASSIFY: Pass = Pass::dispatch("classify", "classify.comp", Domain::Packets);
 
 /// Once a frame, before the first view.
-pub fn first_passes(has_lists: bool) -> impl Iterator<Item = Pass> {
-    has_lists.then_some(CLEAR_LISTS).into_iter()
+pub fn first_passes(has_lists: bool, budgets_vary: bool) -> impl Iterator<Item = Pass> {
+    let clear = has_lists.then_some(CLEAR_LISTS);
+    clear.into_iter().chain(budgets_vary.then_some(BUDGETS))
 }
 
 pub const RESOURCES: &[Resource] = &[
@@ -32,7 +54,25 @@ pub const RESOURCES: &[Resource] = &[
         Shape::array::<Packet>(s.packets()).when(s.packet_lists)
     }),
     Resource::new("pixels", |s| {
-        Shape::array::<u32>(s.pixels()).when(s.pixel_lists)
+        // A packet may leave a pixel to the list for each of the two levels that it is blended from.
+        let each = if s.packet_lists && s.coarse_levels > 0 {
+            2
+        } else {
+            1
+        };
+        Shape::array::<u32>(s.pixels() * each).when(s.pixel_lists)
+    }),
+    Resource::new("budgets", |s| {
+        Shape::array::<f32>(s.pixels()).when(s.budgets_vary)
+    }),
+    Resource::copied("budget_shares", |s| {
+        Shape::array::<f32>(s.pixels()).when(s.budget_mapped)
+    }),
+    Resource::new("quality", |s| {
+        Shape::array::<f32>(s.pixels()).when(s.coarse_levels > 0)
+    }),
+    Resource::new("quality_rows", |s| {
+        Shape::array::<f32>(s.pixels()).when(s.coarse_levels > 0)
     }),
 ];
 

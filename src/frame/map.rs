@@ -72,6 +72,10 @@ const KEEP_LAYER: Pass = Pass::new(
 const HIERARCHY: Pass = building("hierarchy.comp");
 const HIERARCHY_16: Pass = building("hierarchy_16.comp");
 
+/// A coarser level of the map [Schwarz08 §3].
+const COARSE_MAP: Pass =
+    Pass::dispatch("coarse_map", "coarse_map.comp", Domain::PyramidLevel).lasting();
+
 const fn building(shader: &'static str) -> Pass {
     Pass::dispatch("hierarchy", shader, Domain::HierarchyLevel).lasting()
 }
@@ -94,6 +98,8 @@ pub struct Structures {
     pub bounds_bits: u32,
     /// [layer] That are kept; 0 = the map itself is read.
     pub layers: u32,
+    /// [level] Coarser than the map.
+    pub coarse_levels: u32,
 }
 
 /// A hierarchy of levels below `levels` over a map of `map` × `map` texels, with bounds of 16 or 32 bits.
@@ -126,6 +132,7 @@ pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
     // The lowest two are built at once.
     let built = (0..structures.levels).filter(|&level| level != 1);
     passes.extend(built.map(|level| (hierarchy, level)));
+    passes.extend((1..=structures.coarse_levels).map(|level| (COARSE_MAP, level)));
     for layer in 0..structures.layers {
         passes.extend((layer > 0).then_some((PEEL, layer)));
         passes.push((KEEP_LAYER, layer));
@@ -153,6 +160,12 @@ pub const RESOURCES: &[Resource] = &[
     }),
     Resource::new("hierarchy", |s| {
         hierarchy_shape(s.density, s.map, s.levels, s.bounds_bits)
+    }),
+    Resource::new("coarse_map", |s| {
+        // Sides halve, from half of the next power of two on.
+        let side = u64::from(s.map.next_power_of_two());
+        let last = side >> s.coarse_levels;
+        Shape::array::<[f32; 2]>((side * side - last * last) / 3)
     }),
     Resource::new("layers", |s| {
         Shape::layers(ImageKind::Layers, (s.map, s.map), s.layers)

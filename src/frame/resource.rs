@@ -38,6 +38,8 @@ pub struct Sizes {
     pub image: (u32, u32),
     /// The shaded picture is asked for.
     pub picture: bool,
+    /// Pixels have several samples.
+    pub multisampled: bool,
     /// The scene has textures that the frame needs.
     pub textured: bool,
     /// The scene has alpha-masked triangles.
@@ -57,6 +59,11 @@ pub struct Sizes {
     pub density: Density,
     /// [layer] Of the shadow map that are kept.
     pub layers: u32,
+    /// [level] Coarser than the map that are kept; 0 = no budget limits quality.
+    pub coarse_levels: u32,
+    /// Pixels have budgets of their own, and an image of shares is given for them.
+    pub budgets_vary: bool,
+    pub budget_mapped: bool,
     /// Whether there are kernels, and lists of packets and of pixels.
     pub kernels: bool,
     /// Local packets form in windows.

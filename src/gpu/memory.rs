@@ -40,14 +40,21 @@ pub enum ImageKind {
     Sums,
     /// Likewise R16F.
     Sums16,
+    /// As `Depth`, `Vector` and `Color`, with [`SAMPLES`] samples a texel: drawn to, the latter two sampled.
+    DepthSamples,
+    VectorSamples,
+    ColorSamples,
 }
+
+/// Of a texel of a multisampled image. Every device has as many.
+pub const SAMPLES: u32 = 4;
 
 impl ImageKind {
     pub fn format(self) -> vk::Format {
         match self {
-            Self::Depth | Self::Layers => vk::Format::D32_SFLOAT,
-            Self::Vector => vk::Format::R32G32B32A32_SFLOAT,
-            Self::Color => vk::Format::R8G8B8A8_UNORM,
+            Self::Depth | Self::DepthSamples | Self::Layers => vk::Format::D32_SFLOAT,
+            Self::Vector | Self::VectorSamples => vk::Format::R32G32B32A32_SFLOAT,
+            Self::Color | Self::ColorSamples => vk::Format::R8G8B8A8_UNORM,
             Self::Bounds => vk::Format::R32G32_SFLOAT,
             Self::Bounds16 => vk::Format::R16G16_SFLOAT,
             Self::Sums => vk::Format::R32_SFLOAT,
@@ -62,7 +69,23 @@ impl ImageKind {
             Self::Depth | Self::Layers | Self::Color | Self::Bounds16 | Self::Sums => 4,
             Self::Bounds => 8,
             Self::Vector => 16,
+            Self::DepthSamples | Self::ColorSamples => u64::from(4 * SAMPLES),
+            Self::VectorSamples => u64::from(16 * SAMPLES),
         }
+    }
+
+    pub(super) fn samples(self) -> vk::SampleCountFlags {
+        match self.is_multisampled() {
+            true => vk::SampleCountFlags::TYPE_4,
+            false => vk::SampleCountFlags::TYPE_1,
+        }
+    }
+
+    pub fn is_multisampled(self) -> bool {
+        matches!(
+            self,
+            Self::DepthSamples | Self::VectorSamples | Self::ColorSamples
+        )
     }
 
     /// Whether shaders know it as an array, however many layers it has.
@@ -72,9 +95,11 @@ impl ImageKind {
 
     fn usage(self) -> vk::ImageUsageFlags {
         let own = match self {
-            Self::Depth => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            Self::Depth | Self::DepthSamples => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::Vector => vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE,
-            Self::Color | Self::Sums | Self::Sums16 => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+            Self::Color | Self::Sums | Self::Sums16 | Self::VectorSamples | Self::ColorSamples => {
+                vk::ImageUsageFlags::COLOR_ATTACHMENT
+            }
             Self::Layers => vk::ImageUsageFlags::empty(),
             Self::Bounds | Self::Bounds16 => vk::ImageUsageFlags::STORAGE,
         };
@@ -223,7 +248,7 @@ impl Image {
             })
             .mip_levels(1)
             .array_layers(layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(kind.samples())
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(kind.usage());
         // SAFETY: `info` outlives the calls; the image is bound once, and destroyed by `Drop` from

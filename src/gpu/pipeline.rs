@@ -26,6 +26,8 @@ pub struct GraphicsState<'a> {
     pub blend: Blend,
     /// Whether depth is drawn to.
     pub depth: bool,
+    /// What is drawn to has [`SAMPLES`](super::SAMPLES) samples a texel.
+    pub multisampled: bool,
 }
 
 /// A compute pipeline. Errors: a Vulkan call failed.
@@ -90,8 +92,11 @@ pub(super) fn create_graphics_pipeline(
         .polygon_mode(vk::PolygonMode::FILL)
         .cull_mode(vk::CullModeFlags::NONE)
         .line_width(1.0);
-    let samples = vk::PipelineMultisampleStateCreateInfo::default()
-        .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+    let samples = match state.multisampled {
+        true => ImageKind::DepthSamples.samples(),
+        false => ImageKind::Depth.samples(),
+    };
+    let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(samples);
     let depth = vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(state.depth)
         .depth_write_enable(state.depth)

@@ -8,12 +8,15 @@ impl Plan {
     /// All passes of a frame that draws every map.
     pub(super) fn ordered(&self) -> Graph {
         let mut graph = Graph::default();
-        graph.add(Scope::Frame, front::passes(self.front, self.casters));
+        graph.add(
+            Scope::Frame,
+            front::passes(self.front, self.multisampled, self.casters),
+        );
         if self.views().next().is_some() {
             graph.add(Scope::Frame, map::first_passes());
             graph.add(
                 Scope::Frame,
-                kernel::first_passes(self.needs(Recipe::has_lists)),
+                kernel::first_passes(self.needs(Recipe::has_lists), self.budgets_vary()),
             );
         }
         for (index, light) in self.lights.iter().enumerate() {
@@ -29,7 +32,10 @@ impl Plan {
             }
             graph.add(scope, back::light_passes());
         }
-        graph.add(Scope::Frame, back::passes(self.front, self.outputs.picture));
+        graph.add(
+            Scope::Frame,
+            back::passes(self.front, self.outputs.picture, self.multisampled),
+        );
         graph
     }
 
@@ -45,6 +51,7 @@ impl Plan {
             levels: if recipe.kernels { self.levels } else { 0 },
             bounds_bits: self.bounds_bits,
             layers: recipe.layers,
+            coarse_levels: recipe.coarse_levels,
         }
     }
 

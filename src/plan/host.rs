@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::light::{Draft, Placed};
 use super::survey::LightCoverage;
 use super::views::whole_light;
-use super::{Outputs, Plan};
+use super::{Budget, Outputs, Plan};
 use crate::error::{Error, Result};
 use crate::frame::{Casters, Front, Inventory, Surface};
 use crate::gpu::Limits;
@@ -55,6 +55,12 @@ impl HostFrame {
                 "meshes, vertices and triangles are at most {most} each"
             )));
         }
+        if self.settings.multisample > 1 {
+            return Err(Error::Unsupported(
+                "a host's surface has the samples that the host gives it; leave multisample at 1"
+                    .into(),
+            ));
+        }
         let redrawn = Recipe::new(&self.settings.of_light(&self.light)).redraws();
         if redrawn && !self.casters.are_triangles() {
             return Err(Error::Unsupported(format!(
@@ -87,6 +93,11 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     let mut plan = Plan {
         front: Front::Imported(host.surface),
         casters: host.casters,
+        // A host's surface has no colour.
+        budget: Budget {
+            masking: 1.0,
+            ..Budget::new(settings)
+        },
         ..Plan::empty(host.size, frame, outputs, settings, limits)
     };
     let found = LightCoverage {

@@ -26,6 +26,13 @@ impl Plan {
         let lights = shot.lights.iter().zip(&self.lights).zip(found);
         let notes = lights.flat_map(|((light, planned), found)| notes(shot, light, planned, found));
         self.notes.extend(notes.collect::<Vec<_>>());
+        if shot.budget_map.is_some() && !self.budgets_vary() {
+            let reason = match shot.settings.budget {
+                None => "there is no --budget".to_owned(),
+                Some(_) => format!("{} does not read --budget", shot.settings.technique),
+            };
+            (self.notes).push(format!("The budget map is ignored, for {reason}."));
+        }
     }
 }
 

@@ -31,6 +31,9 @@ impl Plan {
         if !self.outputs.picture {
             self.omit("shade", "only visibility is asked for");
         }
+        if shot.settings.multisample > 1 && !self.multisampled {
+            self.omit("samples of a pixel", "only visibility is asked for");
+        }
         for index in 0..self.lights.len() {
             self.omit_of_light(shot, index);
         }

@@ -21,6 +21,13 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
         ("TELLS_CASTERS", plan.tells_casters.into()),
+        ("MULTISAMPLED", plan.multisampled.into()),
+        ("NEIGHBOUR_VISIBILITY", plan.neighbour_visibility.into()),
+        ("BUDGET", plan.budget.number.unwrap_or(0)),
+        ("BUDGETS_VARY", plan.budgets_vary().into()),
+        ("BUDGET_FALLOFF", plan.budget.falloff.to_bits()),
+        ("BUDGET_MASKING", plan.budget.masking.to_bits()),
+        ("BUDGET_MAPPED", plan.budget.mapped.into()),
     ])
 }
 
@@ -34,6 +41,7 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
         ("CONES", (view.view.cone != ALL_CONES).into()),
         ("ACCUMULATE", light.accumulates().into()),
         ("LAYERS", set.recipe.layers.max(1)),
+        ("COARSE_LEVELS", set.recipe.coarse_levels),
     ]);
     constants
 }

@@ -36,6 +36,10 @@ impl Counters {
                 "samples_read",
                 broad(self.samples_read, before.samples_read),
             ),
+            (
+                "coarse_levels",
+                narrow(self.coarse_levels, before.coarse_levels),
+            ),
         ])
     }
 }

@@ -62,16 +62,18 @@ impl Pipelines {
             } => {
                 let colors = colors(plan, into, output);
                 let (depth, blend) = match into {
-                    Target::Images { depth, blend, .. } => (depth.is_some(), blend),
-                    Target::Lent => (false, Blend::Replace),
+                    Target::Images { depth, blend, .. } => (depth, blend),
+                    Target::Lent => (None, Blend::Replace),
                 };
+                let kind = depth.and_then(|name| plan.image_kind(name));
                 let draw = |name: &str, fragment, constants: &Constants| {
                     let state = GraphicsState {
                         vertex,
                         fragment,
                         colors: &colors,
                         blend,
-                        depth,
+                        depth: depth.is_some(),
+                        multisampled: kind.is_some_and(ImageKind::is_multisampled),
                     };
                     GraphicsPass::with_each(gpu, name, &state, constants, &lists)
                 };

@@ -29,6 +29,10 @@ pub fn create(
     let views: Vec<View> = plan.views().map(|planned| planned.view).collect();
     let mut contents = scene_contents(shot);
     contents.insert("views", bytes(&views));
+    if let Some(map) = &shot.budget_map {
+        let shares = map.stretched(shot.width as usize, shot.height as usize);
+        contents.insert("budget_shares", bytes(&shares));
+    }
     let mut resources = create_planned(gpu, plan, costs, contents)?;
     let mut add = |name, data: Vec<u8>| -> Result<()> {
         resources.add_buffer(name, Buffer::with_data(gpu, name, &data)?);

@@ -1,13 +1,13 @@
 //! Shot files (JSON), and glTF files that bring their own camera and lights.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::{MAX_SIZE, Settings, Shot};
+use super::{MAX_SIZE, Settings, Shot, budget_map};
 use crate::scene::gltf::{self, Blend, Limits, LoadOptions};
 use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, SUN_ANGLE_DEG, Scene, file};
 use crate::{Error, Result};
@@ -31,6 +31,8 @@ pub struct Overrides {
     pub scene_index: Option<usize>,
     /// Which camera of the scene, counted from 0. A camera in the shot file goes before it.
     pub camera_index: Option<usize>,
+    /// An image of shares of the budget, in place of the shot file's ([`Shot::budget_map`]).
+    pub budget_map: Option<PathBuf>,
     /// A glTF may name files outside of its own folder.
     pub outside_paths: bool,
     /// What surfaces of a glTF are that blend with what is behind them.
@@ -45,6 +47,7 @@ pub struct Overrides {
 struct ShotFile {
     scene: String,
     casters: Option<Vec<String>>,
+    budget_map: Option<PathBuf>,
     camera: Option<CameraFile>,
     light: Option<LightFile>,
     lights: Option<Vec<LightFile>>,
@@ -131,6 +134,9 @@ impl Shot {
         if let Some(size) = overrides.size {
             shot.size = size.into();
         }
+        if overrides.budget_map.is_some() {
+            shot.budget_map.clone_from(&overrides.budget_map);
+        }
         let shot = shot.finish(path, overrides)?;
         match shot.validate() {
             Err(Error::Invalid(message)) => Err(Error::parse(path, message)),
@@ -216,6 +222,7 @@ fn read_shot_file(path: &Path, bytes: &[u8], overrides: &Overrides) -> Result<Dr
     let scene = gltf::load(&folder.join(shot.scene), &options)?;
     let mut draft = Draft::new(scene);
     draft.notes = notes;
+    draft.budget_map = shot.budget_map.map(|file| folder.join(file));
     let of_lights = [
         ("--radius", overrides.radius),
         ("--sun-angle", overrides.sun_angle_deg),
@@ -268,6 +275,7 @@ struct Draft {
     camera: Option<Camera>,
     size: Size,
     lights: Vec<AreaLight>,
+    budget_map: Option<PathBuf>,
     notes: Vec<String>,
 }
 
@@ -290,6 +298,7 @@ impl Draft {
             camera: None,
             size: Size(None, None),
             lights: Vec::new(),
+            budget_map: None,
             notes: Vec::new(),
         }
     }
@@ -297,12 +306,15 @@ impl Draft {
     /// Takes what is missing from the scene.
     fn finish(self, path: &Path, overrides: &Overrides) -> Result<Shot> {
         let Self {
-            scene,
+            mut scene,
             camera,
             size,
             mut lights,
+            budget_map,
             notes,
         } = self;
+        let shares = budget_map.as_deref().map(budget_map::read).transpose()?;
+        scene.files.extend(budget_map);
         let camera = match camera {
             Some(camera) => camera,
             None => scene_camera(&scene, overrides.camera_index)
@@ -339,6 +351,7 @@ impl Draft {
             height,
             lights,
             settings,
+            budget_map: shares.map(Arc::new),
             notes,
         })
     }

@@ -13,6 +13,8 @@ mod plot;
 mod report;
 mod row;
 mod schwarz08;
+mod schwarz08_quality;
+mod schwarz08_samples;
 mod stage;
 mod truth;
 mod yang09;
@@ -122,13 +124,17 @@ impl Candidate {
 }
 
 /// All experiments, by publication.
-pub static EXPERIMENTS: [Experiment; 15] = [
+pub static EXPERIMENTS: [Experiment; 19] = [
     yang09::FIG8,
     yang09::FIG9,
     yang09::FIG11,
     yang09_packets::FIG12,
     yang09_packets::FIG13,
+    schwarz08_quality::FIG7,
+    schwarz08_quality::FIG8,
+    schwarz08_samples::FIG9,
     schwarz08::TABLE1,
+    schwarz08_quality::TABLE2,
     atty06_format::FIG14,
     atty06::FIG17,
     atty06::FIG18,

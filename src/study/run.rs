@@ -10,7 +10,7 @@ use crate::spread::Spread;
 use crate::technique::Settings;
 
 /// Passes that rasterise; all others compute, copy or clear.
-const RASTER: [&str; 3] = ["gbuffer", "shadow_map", "peel"];
+const RASTER: [&str; 4] = ["gbuffer", "pick_sample", "shadow_map", "peel"];
 
 /// Passes that a frame without shadows has as well.
 const SHARED: [&str; 2] = ["gbuffer", "shade"];

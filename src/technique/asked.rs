@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(
             settings.flags().join(" "),
             "--technique pixel-contour --map 1024 --bias 0.25 --split 1 --hierarchy graded --mssm-bits 32 \
-             --hierarchical"
+             --budget none --hierarchical --multisample 1"
         );
     }
 
@@ -125,10 +125,21 @@ mod tests {
                 Technique::Hard => {
                     assert_eq!(
                         read,
-                        ["technique", "map", "bias", "percentage-closer", "counters"]
+                        [
+                            "technique",
+                            "map",
+                            "bias",
+                            "percentage-closer",
+                            "multisample",
+                            "counters"
+                        ]
                     );
                 }
-                _ => assert_eq!(read, ["map", "bias", "counters"], "{technique}"),
+                _ => assert_eq!(
+                    read,
+                    ["map", "bias", "multisample", "counters"],
+                    "{technique}"
+                ),
             }
         }
     }

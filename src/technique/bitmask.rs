@@ -5,22 +5,35 @@
 //! jittered samples break them up, always in the same way); occluders shrink by half a texel, and what is a single
 //! sample wide is missed; with one layer, what the centre of the light cannot see is missed too.
 
-use super::{Method, Recipe, Settings, with};
+use super::{Method, Recipe, Settings, budget_knobs, with};
 
 pub struct Bitmask;
+
+/// Coarser levels are those of the map, not of layers behind it.
+fn is_single(settings: &Settings) -> bool {
+    settings.layers == 1
+}
 
 impl Method for Bitmask {
     fn recipe(&self, settings: &Settings) -> Recipe {
         let layers = settings.layers;
-        Recipe {
+        let recipe = Recipe {
             layers: if layers > 1 { layers } else { 0 },
             words: (settings.light_samples * settings.light_samples).div_ceil(32),
             ..Recipe::over_pixels("bitmask_visibility", "bitmask_visibility.comp")
+        };
+        match is_single(settings) {
+            true => recipe.within_budget(settings),
+            false => recipe,
         }
     }
 
-    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
-        vec!["split", "light-samples", "pattern", "layers"]
+    fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
+        let mut knobs = vec!["split", "light-samples", "pattern", "layers"];
+        if is_single(settings) {
+            knobs.extend(budget_knobs(settings));
+        }
+        knobs
     }
 
     fn variants(&self, usual: Settings) -> Vec<Settings> {

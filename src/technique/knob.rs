@@ -52,6 +52,7 @@ enum Allowed {
     Any,
     Within(u32, u32),
     OneOf(&'static [u32]),
+    Share,
 }
 
 /// How a knob's field is read and written.
@@ -104,6 +105,16 @@ impl Row {
 
     pub(super) const fn one_of(self, numbers: &'static [u32], rule: &'static str) -> Self {
         let allowed = Allowed::OneOf(numbers);
+        Self {
+            allowed,
+            rule,
+            ..self
+        }
+    }
+
+    /// `rule`: a sentence, with {} for the range.
+    pub(super) const fn share(self, rule: &'static str) -> Self {
+        let allowed = Allowed::Share;
         Self {
             allowed,
             rule,
@@ -368,7 +379,7 @@ impl Field for (u32, u32) {
     }
 }
 
-/// A finite number from 0.
+/// A finite number from 0, or a share.
 impl Field for f32 {
     fn text(&self) -> String {
         self.to_string()
@@ -388,12 +399,45 @@ impl Field for f32 {
     }
 
     fn check(&self, row: &Row) -> Result<()> {
-        match self.is_finite() && *self >= 0.0 {
+        let (most, allowed) = match row.allowed {
+            Allowed::Share => (1.0, "0 to 1"),
+            _ => (f32::MAX, ""),
+        };
+        match (0.0..=most).contains(self) {
             true => Ok(()),
-            false => row.refuse("", self),
+            false => row.refuse(allowed, self),
         }
     }
 }
+
+/// A number, or none, which is 0 where a number must stand for it.
+impl Field for Option<u32> {
+    fn text(&self) -> String {
+        self.map_or_else(|| NONE.to_owned(), |value| value.to_string())
+    }
+
+    fn parse(text: &str) -> Result<Self> {
+        match text {
+            NONE => Ok(None),
+            number => parsed(number).map(Some),
+        }
+    }
+
+    fn number(&self) -> u32 {
+        self.unwrap_or(0)
+    }
+
+    fn from_number(number: u32) -> Numbered<Self> {
+        Ok((number != 0).then_some(number))
+    }
+
+    fn check(&self, row: &Row) -> Result<()> {
+        self.map_or(Ok(()), |value| value.check(row))
+    }
+}
+
+/// How a number that is not there is written.
+const NONE: &str = "none";
 
 /// A finite number from 0, or what is usual.
 impl Field for Option<f32> {

@@ -6,17 +6,18 @@
 //! and below and lets occluders grow. A texel is opaque to its border, so occluders are too large by up to half a
 //! texel; what the centre of the light cannot see is missed.
 
-use super::{Method, Recipe, Settings, with};
+use super::{Method, Recipe, Settings, budget_knobs, with};
 
 pub struct Micropatch;
 
 impl Method for Micropatch {
-    fn recipe(&self, _settings: &Settings) -> Recipe {
+    fn recipe(&self, settings: &Settings) -> Recipe {
         Recipe::over_pixels("micropatch_visibility", "micropatch_visibility.comp")
+            .within_budget(settings)
     }
 
-    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
-        vec!["split", "no-gap-filling"]
+    fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
+        [&["split", "no-gap-filling"], budget_knobs(settings)].concat()
     }
 
     fn variants(&self, usual: Settings) -> Vec<Settings> {

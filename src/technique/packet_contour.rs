@@ -8,7 +8,7 @@
 
 use super::{
     CLASSIFY, CONTOUR_BIAS, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings,
-    TURNS_OF_WALKS, once, with,
+    TURNS_OF_WALKS, budget_knobs, once, with,
 };
 use crate::frame::{Domain, Pass};
 
@@ -47,6 +47,7 @@ impl Method for PacketContour {
             windows: mapping == Some(Mapping::Cooperative),
             ..Recipe::default()
         }
+        .within_budget(settings)
     }
 
     fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
@@ -58,6 +59,7 @@ impl Method for PacketContour {
         if matches!(mapping, Some(Mapping::Serial | Mapping::Lanes)) {
             knobs.push("leaf");
         }
+        knobs.extend(budget_knobs(settings));
         knobs
     }
 

@@ -6,7 +6,8 @@
 //! hierarchical over the hierarchy.
 
 use super::{
-    CLASSIFY, CONTOUR_BIAS, KERNELS, Method, PIXELS, Recipe, Settings, TURNS_OF_WALKS, once, with,
+    CLASSIFY, CONTOUR_BIAS, KERNELS, Method, PIXELS, Recipe, Settings, TURNS_OF_WALKS,
+    budget_knobs, once, with,
 };
 
 pub struct PixelContour;
@@ -18,11 +19,11 @@ impl Method for PixelContour {
             recipe.passes = once([KERNELS, CLASSIFY, PIXELS]);
             recipe.turns = TURNS_OF_WALKS;
         }
-        recipe
+        recipe.within_budget(settings)
     }
 
-    fn knobs(&self, _settings: &Settings) -> Vec<&'static str> {
-        vec!["split", "hierarchical"]
+    fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
+        [&["split", "hierarchical"], budget_knobs(settings)].concat()
     }
 
     fn constants(&self, _settings: &Settings) -> Vec<(&'static str, u32)> {

@@ -6,6 +6,7 @@ use super::{Recipe, Technique};
 use crate::Result;
 use crate::frame::Density;
 use crate::scene::AreaLight;
+use crate::shared::LEAST_BUDGET;
 
 choice! {
     /// What a leaf does whose status differs between the packet's pixels.
@@ -371,6 +372,44 @@ settings! {
         )
         .sets("BOTTOM_PATCHES");
 
+    /// [micro-occluder] [4, 4096] Along each side of a pixel's kernel, at most; None: no limit [Schwarz08 §4].
+    budget: Option<u32> = None,
+        Row::value(
+            "budget",
+            "N",
+            "Take levels of the map so coarse that kernels have no more than about N texels a side, 4 to 4096, blended smoothly; \
+             with packet-contour, pixel-contour, micropatch and bitmask of one layer [default: none, the map itself]",
+        )
+        .depends()
+        .within(4, 4096, "a budget is {} micro-occluders a side")
+        .swept("budgets", "NUMBERS", "Values of --budget, none for no limit [default: none]");
+
+    /// [0, 1] With a budget: the share of it that is left at the image's border.
+    budget_falloff: f32 = 1.0,
+        Row::value(
+            "budget-falloff",
+            "SHARE",
+            "With --budget: the share of it that is left at the image's border, 0 to 1; from the middle on it falls evenly",
+        )
+        .share("what is left of a budget at the image's border is {}");
+
+    /// [0, 1] With a budget: the share of it that is left where the surface's texture hides what shadows look like.
+    budget_masking: f32 = 1.0,
+        Row::value(
+            "budget-masking",
+            "SHARE",
+            "With --budget: the share of it that is left where a surface's texture has much contrast, 0 to 1",
+        )
+        .share("what is left of a budget under a texture is {}");
+
+    /// With a budget: kernels are looked for in all that the coarse texels at their corners stand for [Schwarz08 §6].
+    query_growth: bool = true,
+        Row::switch(
+            "no-query-growth",
+            "With --budget: look for kernels in no more than the texels in them, which ends shadows of coarse levels too early",
+        )
+        .sets("QUERY_GROWTH");
+
     /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
     footprint_pruning: bool = true,
         Row::switch(
@@ -401,6 +440,22 @@ settings! {
             "With hard: the share of 3×3 samples that hide the pixel, instead of the nearest one",
         )
         .sets("FILTER_REACH");
+
+    /// [sample] 1 or 4: of a pixel, in the picture; visibility is of one of them [Schwarz08 §7].
+    multisample: u32 = 1,
+        Row::value(
+            "multisample",
+            "N",
+            "Samples of a pixel in the picture, 1 or 4, which have one visibility together",
+        )
+        .one_of(&[1, crate::gpu::SAMPLES], "a pixel has {} samples");
+
+    /// With several samples: one that lies on another surface than its pixel's takes a neighbour's visibility.
+    neighbour_visibility: bool = true,
+        Row::switch(
+            "no-neighbour-visibility",
+            "With --multisample 4: give all samples of a pixel its visibility, whatever they lie on",
+        );
 
     /// Count pixels, packets, nodes and edges (costs time).
     counters: bool = false,
@@ -465,6 +520,12 @@ impl Settings {
         self.near_points > 0 && self.reads("near-points", false) == Some(true)
     }
 
+    /// [level] Coarser than the map that a budget can take; None: there is no budget.
+    pub fn coarse_levels(&self) -> Option<u32> {
+        let whole = self.map.next_power_of_two().ilog2();
+        (self.budget).map(|_| whole.saturating_sub(LEAST_BUDGET.ilog2()))
+    }
+
     /// Whether it is the light's points that cast shadows, hard ones.
     pub fn samples_points(&self) -> bool {
         self.technique.method().samples_points()
@@ -486,7 +547,8 @@ impl Settings {
         let is_read = match flag {
             "technique" => !point || self.technique == Technique::Hard,
             "hierarchy" | "mssm-bits" => !point && Recipe::new(self).kernels,
-            "counters" => true,
+            "counters" | "multisample" => true,
+            "no-neighbour-visibility" => self.multisample > 1,
             _ => own.contains(&flag),
         };
         Some(is_read)

@@ -5,6 +5,7 @@ use glam::Vec2;
 
 use super::contour::ShadowMap;
 use super::hierarchy::Hierarchy;
+use super::quality::Budget;
 use super::receiver::{Receiver, extents};
 use crate::shared::{KERNEL_LIT, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, View};
 
@@ -34,13 +35,14 @@ fn packed(cell: [i32; 2]) -> u32 {
     cell[0] as u32 | (cell[1] as u32) << 16
 }
 
-/// The kernel of a receiver that the view has to look at, for contours.
+/// The kernel of a receiver that the view has to look at, for contours; `budget`: what limits its quality.
 pub fn kernel_of(
     view: &View,
     oblique: bool,
     receiver: &Receiver,
     map: &ShadowMap,
     hierarchy: &Hierarchy,
+    budget: Option<&Budget>,
 ) -> Kernel {
     let lit = Kernel {
         status: KERNEL_LIT,
@@ -59,7 +61,10 @@ pub fn kernel_of(
         if (0..2).any(|axis| cells.first[axis] > cells.last[axis]) {
             return lit;
         }
-        let range = hierarchy.query(cells.first, cells.last, finer);
+        let (first, last) = budget.map_or((cells.first, cells.last), |budget| {
+            budget.queried((cells.first, cells.last), map.size)
+        });
+        let range = hierarchy.query(first, last, finer);
         found = Some((cells, range));
         let stalls = range[1] >= depth_max;
         if stalls && finer == finest {
@@ -73,7 +78,8 @@ pub fn kernel_of(
     let Some((cells, range)) = found.filter(|_| depth_max > receiver.biased) else {
         return lit;
     };
-    if nothing_occludes(receiver, map, &cells) {
+    let is_coarse = budget.is_some_and(|budget| budget.level((cells.first, cells.last)) > 0);
+    if !is_coarse && nothing_occludes(receiver, map, &cells) {
         return lit;
     }
     let umbra = cells.whole && !receiver.behind && range[0] > highest_limit(receiver, &cells);

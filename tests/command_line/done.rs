@@ -89,7 +89,7 @@ fn check_stats(stats: &Value) {
     );
     let mut counters = keys(&stats["counters"]);
     counters.sort_unstable();
-    let expected = "coherent_packets edges_extracted lit nodes_visited packets penumbra pixels \
+    let expected = "coarse_levels coherent_packets edges_extracted lit nodes_visited packets penumbra pixels \
                     reprocessed_packets samples_read umbra";
     assert_eq!(counters.join(" "), expected);
     let memory = stats["memory_bytes"].as_object().unwrap();

@@ -1,4 +1,5 @@
 //! A device under validation, and what each view of a shot leaves behind on it.
+#![allow(dead_code)] // Each test program uses a part of it.
 
 use std::path::PathBuf;
 use std::sync::Arc;

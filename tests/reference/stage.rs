@@ -93,6 +93,7 @@ pub fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
         height,
         lights,
         settings: Settings::default(),
+        budget_map: None,
         notes,
     }
 }

@@ -16,13 +16,17 @@ use super::made_up;
 use super::support::with_gpu;
 
 /// What the issue asks for.
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 19] = [
     "yang09-fig8",
     "yang09-fig9",
     "yang09-fig11",
     "yang09-fig12",
     "yang09-fig13",
+    "schwarz08-fig7",
+    "schwarz08-fig8",
+    "schwarz08-fig9",
     "schwarz08-table1",
+    "schwarz08-table2",
     "atty06-fig14",
     "atty06-fig17",
     "atty06-fig18",

@@ -232,6 +232,7 @@ pub fn shot(
         height: side,
         lights: vec![light],
         settings,
+        budget_map: None,
         notes: Vec::new(),
     }
 }

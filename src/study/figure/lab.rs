@@ -7,19 +7,22 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::gpu::Gpu;
+use crate::plan::Outputs;
 use crate::reference::ReferenceOptions;
-use crate::render::DEFAULT_COSTS;
+use crate::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
+use crate::shot::Shot;
 use crate::spread::Spread;
 use crate::technique::Settings;
 use crate::{Error, Result};
 
 use super::super::bench::{Bench, Protocol};
+use super::super::flicker::all_lights;
 use super::super::run::Machine;
 use super::super::subject::Subject;
 use super::busy::Busy;
 use super::check::number;
 use super::report::Report;
-use super::{Experiment, Row, Scale, Trial};
+use super::{Experiment, Row, Scale, Trial, Truth};
 
 /// [s] The wall time after which a candidate gets no further frame but its first timed one.
 const SECONDS: [f64; 3] = [30.0, 30.0, 60.0];
@@ -125,7 +128,26 @@ impl Lab<'_> {
             self.interrupted,
         )?;
         let rays_off = trial.truth.apply(&mut subject)?;
+        if let Truth::Rendered(settings) = &trial.truth {
+            subject.visibility.data = self.rendered(trial, settings)?;
+        }
         Ok((subject, rays_off))
+    }
+
+    /// The visibility of a trial's lights by other settings, one below the other.
+    fn rendered(&self, trial: &Trial, settings: &Settings) -> Result<Vec<f32>> {
+        let shot = Shot {
+            settings: settings.clone(),
+            ..trial.shot.clone()
+        };
+        let options = RenderOptions {
+            outputs: Outputs { picture: false },
+            costs: DEFAULT_COSTS,
+            exposure: DEFAULT_EXPOSURE,
+        };
+        let mut renderer = Renderer::new(self.gpu, &shot, options)?;
+        renderer.render()?;
+        all_lights(&renderer, shot.lights.len())
     }
 
     fn rows(

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::super::run::{Measured, Run};
+use crate::compare::Metrics;
 
 /// A point of a curve.
 #[derive(Debug, Clone, Serialize)]
@@ -67,6 +68,11 @@ impl Row {
         self.run.measured().map_or(f64::NAN, value)
     }
 
+    /// Of the errors of its visibility.
+    pub(super) fn metrics(&self, value: impl Fn(&Metrics) -> f64) -> f64 {
+        self.of(|measured| value(&measured.errors.metrics))
+    }
+
     pub fn error(&self) -> f64 {
         self.of(|measured| measured.errors.metrics.mae_shadow)
     }
@@ -74,6 +80,11 @@ impl Row {
     /// [ms] Of the shadow passes.
     pub fn ms(&self) -> f64 {
         self.of(|measured| measured.shadow_ms.median)
+    }
+
+    /// [ms] The whole frame.
+    pub fn frame_ms(&self) -> f64 {
+        self.of(|measured| measured.total_ms.median)
     }
 
     /// [ms] Of one pass, summed over a frame.

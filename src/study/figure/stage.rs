@@ -181,6 +181,7 @@ impl Stage {
                 intensity: None,
             }],
             settings: Settings::default(),
+            budget_map: None,
             notes: Vec::new(),
         }
     }

@@ -5,12 +5,13 @@ use glam::{DVec2, DVec3};
 use crate::reference::bvh::{Bvh, Ray};
 use crate::reference::pinhole::Pinhole;
 use crate::shot::Shot;
+use crate::technique::Settings;
 use crate::{Error, Result};
 
 use super::super::subject::Subject;
 
 /// What the candidates of a trial are compared with.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Truth {
     /// Rays, in all pixels.
     Rays,
@@ -18,6 +19,8 @@ pub enum Truth {
     OnGround,
     /// The closed form of a square's shadow, in the pixels that see the ground y = 0.
     Square(Square),
+    /// What the renderer makes of these settings: what is found is how candidates differ from them.
+    Rendered(Box<Settings>),
 }
 
 /// A horizontal square over the ground y = 0, under a square light that is parallel to it, with sides along x and z.
@@ -85,13 +88,13 @@ fn area(polygon: &[DVec2]) -> f64 {
 }
 
 impl Truth {
-    /// Puts this truth in the place of the traced one, and leaves out the pixels where it says nothing. Returns how far
+    /// Puts this truth in the place of the traced one, unless it is rendered, and leaves out the pixels where it says nothing. Returns how far
     /// the rays were off a closed form, on the mean over shadow pixels.
     ///
     /// # Errors
     /// The shot has more than one light, or cannot be traced.
-    pub(super) fn apply(self, subject: &mut Subject) -> Result<Option<f64>> {
-        if self == Self::Rays {
+    pub(super) fn apply(&self, subject: &mut Subject) -> Result<Option<f64>> {
+        if matches!(self, Self::Rays | Self::Rendered(_)) {
             return Ok(None);
         }
         if subject.shot.lights.len() != 1 {

@@ -165,6 +165,7 @@ impl Stage {
                 height: self.size.1,
                 lights: vec![light],
                 settings: Settings::default(),
+                budget_map: None,
                 notes: Vec::new(),
             },
             changes: self.changes,
