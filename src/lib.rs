@@ -94,7 +94,6 @@ pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
-#[cfg(feature = "reference")]
 pub mod image;
 pub mod number;
 pub mod plan;
