@@ -107,6 +107,11 @@ pub trait Method: Sync {
         settings.split = 1;
     }
 
+    /// The kinds of occluders that it has a choice of; none: there is no choice.
+    fn occluders(&self) -> &'static [Occluders] {
+        &[]
+    }
+
     /// The settings by which it is compared with others, those that it is known by (`usual`) and its variants.
     fn variants(&self, usual: Settings) -> Vec<Settings> {
         vec![usual]
@@ -154,6 +159,8 @@ pub struct Recipe {
     pub layers: u32,
     /// [level] Coarser than the map that visibility is blended from; 0 = no budget limits quality.
     pub coarse_levels: u32,
+    /// These levels are of microrects.
+    pub microrects: bool,
     /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.
     pub words: u32,
     /// [turn] Of loops for each cell of the map, at most, where a driver bounds them.
@@ -189,6 +196,7 @@ impl Recipe {
             return self;
         };
         self.coarse_levels = levels;
+        self.microrects = settings.occluders == Occluders::Microrects;
         let passes = self.passes.into_iter().flat_map(|(pass, level)| {
             let passes = match pass.domain() {
                 Some(Domain::PacketList | Domain::PixelList) => blended(pass).to_vec(),

@@ -10,6 +10,7 @@ pub mod facing;
 pub mod hierarchy;
 pub mod irradiance;
 pub mod kernels;
+pub mod microrect;
 pub mod quality;
 pub mod radial;
 pub mod receiver;

@@ -13,10 +13,11 @@ use halfshade::image::Plane;
 use halfshade::render::Renderer;
 use halfshade::shared::{KERNEL_LIT, KERNEL_PENUMBRA, KERNEL_UMBRA, LEAST_BUDGET};
 use halfshade::shot::Shot;
-use halfshade::technique::{Hierarchy as Density, Leaf, Mapping, Settings, Technique};
+use halfshade::technique::{Hierarchy as Density, Leaf, Mapping, Occluders, Settings, Technique};
 use halfshade::twin::contour::ShadowMap;
 use halfshade::twin::hierarchy::Hierarchy;
 use halfshade::twin::kernels::{kernel_of, unpacked};
+use halfshade::twin::microrect::{Level, Rect};
 use halfshade::twin::quality::{Budget, CoarseMap, Surface, fit_at, receiver_at};
 use halfshade::twin::radial::SubLight;
 use halfshade::twin::receiver::{Receiver, in_view, project};
@@ -361,6 +362,74 @@ fn over_precision_ends_shadows_too_early() {
         }
         assert!(cut > 40, "{cut} pixels are lit too early");
         assert_eq!(gained, 0);
+    });
+}
+
+/// The device's microrects are the twin's, in every level and bit.
+#[test]
+fn microrects_are_those_of_their_twin() {
+    with_device(|gpu| {
+        for scene in ["knot", "colonnade"] {
+            let settings = Settings {
+                map: MAP,
+                counters: true,
+                occluders: Occluders::Microrects,
+                ..Settings::usual(Technique::Bitmask)
+            };
+            let mut renderer = renderer(gpu, &with_settings(scene, &settings, Some(4)));
+            let traces = traces(&mut renderer, 0);
+            let levels = renderer.plan().lights[0].sets[0].recipe.coarse_levels;
+            let last = MAP >> levels;
+            let found: Vec<[u32; 3]> = renderer
+                .read_buffer("microrects", ((MAP * MAP - last * last) / 3) as usize)
+                .expect("microrects");
+            let mut found = found.iter();
+            let mut level = Level::of_map(&map_of(&traces));
+            for number in 1..=levels {
+                level = level.coarser();
+                for (i, wanted) in level.rects.iter().enumerate() {
+                    let &[depth, first, last] = found.next().expect("a microrect");
+                    let reference =
+                        [i as i32 % level.side, i as i32 / level.side].map(|i| i << number);
+                    let texel = |packed: u32| {
+                        let offset = [packed as u16 as i16, (packed >> 16) as u16 as i16];
+                        [0, 1].map(|axis| reference[axis] + i32::from(offset[axis]))
+                    };
+                    let rect = (depth != 0).then(|| Rect {
+                        depth: f32::from_bits(depth),
+                        first: texel(first),
+                        last: texel(last),
+                    });
+                    assert_eq!(rect, *wanted, "{scene}, level {number}, {i}");
+                }
+            }
+        }
+    });
+}
+
+/// [Schwarz08, fig. 12] Coarse micropatches leave gaps where depths differ, through which light leaks into umbrae; coarse
+/// microrects follow surfaces.
+#[test]
+fn microrects_leak_less_than_micropatches() {
+    with_device(|gpu| {
+        let image = |occluders, budget| {
+            let settings = Settings {
+                map: MAP,
+                occluders,
+                ..Settings::usual(Technique::Bitmask)
+            };
+            visibility(gpu, &with_settings("knot", &settings, budget))
+        };
+        let fine = image(Occluders::Microquads, None);
+        let leaks = |occluders| {
+            let coarse = image(occluders, Some(8));
+            let umbra = fine.iter().zip(&coarse).filter(|(fine, _)| **fine < 0.1);
+            let leaks = umbra.map(|(fine, coarse)| f64::from((coarse - fine).max(0.0)));
+            leaks.sum::<f64>()
+        };
+        let [patches, rects] = [Occluders::Micropatches, Occluders::Microrects].map(leaks);
+        println!("light leaked: {patches:.2} through micropatches, {rects:.2} through microrects");
+        assert!(rects < 0.8 * patches, "{rects} {patches}");
     });
 }
 

@@ -56,6 +56,14 @@ fn siblings() -> Vec<(&'static str, Settings)> {
             },
         ),
         (
+            "microrects",
+            Settings {
+                budget: Some(5),
+                occluders: Occluders::Microrects,
+                ..usual(Technique::Micropatch)
+            },
+        ),
+        (
             "micropatch within a budget",
             Settings {
                 budget: Some(5),
@@ -78,6 +86,14 @@ fn siblings() -> Vec<(&'static str, Settings)> {
             "bitmask 16 jittered, 2 layers",
             Settings {
                 layers: 2,
+                ..usual(Technique::Bitmask)
+            },
+        ),
+        (
+            "bitmask of microrects",
+            Settings {
+                budget: Some(5),
+                occluders: Occluders::Microrects,
                 ..usual(Technique::Bitmask)
             },
         ),

@@ -5,7 +5,7 @@
 float find_patch(uint layer, inout Scan scan) {
     float depth = 0.0;
     SEARCH_WHILE(depth == 0.0 && !at_end(scan)) {
-        depth = occluder_or(pixel.receiver, depth_at(layer, scan.at), 0.0);
+        depth = occluder_or(pixel.receiver, box_depth(layer, scan.at), 0.0);
         if (depth == 0.0) advance(scan);
         ++nodes_visited;
         ++samples_read;

@@ -1,8 +1,13 @@
 // Micropatches: each occluding texel of the shadow map is a rectangle parallel to the map at the texel's depth,
-// and their back-projections' areas add up [Atty06, GBP06]. For techniques over the pixel list (pixel_list.glsl); needs
-// radial.glsl.
+// and their back-projections' areas add up [Atty06, GBP06]; in coarser levels microrects may take their place (occluder_box.glsl).
+// For techniques over the pixel list (pixel_list.glsl); needs radial.glsl.
+
+#include "microrect.glsl"
+#include "occluder_box.glsl"
 
 layout(constant_id = 15) const bool GAP_FILLING = false;  // patches reach out to their neighbours
+
+bool fills_gaps() { return GAP_FILLING && !MICRORECTS; }
 
 // [half sizes²] The sub-light's area inside a box, for a sub-light that is one.
 float area_of_boxes(View view, vec2 lower, vec2 upper) {
@@ -20,12 +25,13 @@ float area_in_quadrangle(View view, vec3 corners[4], vec4 sides) {
 
 // [half sizes²] What the patch at `texel` hides of the sub-light. depths: its own, its left neighbour's and its
 // bottom neighbour's, its own again where the neighbour is no occluder. With GAP_FILLING the patch's left and
-// bottom sides reach out to where the neighbours end, if that closes a gap [GBP06].
+// bottom sides reach out to where the neighbours end, if that closes a gap [GBP06]; microrects do not.
 // DEVIATION [GBP06]: seen from a side face a patch is no box on the light; there its corners move.
 float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
-    vec2 lower = vec2(texel) - 0.5 - receiver.t;
-    vec2 upper = lower + 1.0;
-    vec2 neighbours = GAP_FILLING ? depths.yz : depths.xx;
+    Box box = box_at(texel);
+    vec2 lower = box.lower - receiver.t;
+    vec2 upper = box.upper - receiver.t;
+    vec2 neighbours = fills_gaps() ? depths.yz : depths.xx;
     vec3 corners[4];
     if (OBLIQUE) {
         vec2 outer = vec2(lower.x > 0.0 ? max(depths.x, neighbours.x) : min(depths.x, neighbours.x),
@@ -59,7 +65,7 @@ float occluder_or(Receiver receiver, float depth, float own) { return depth > re
 // As `patch_area`, with the neighbours' depths read from the map; 0 where `depth` is, which stands for no patch.
 float patch_area_at(uint layer, ivec2 texel, float depth) {
     vec3 depths = vec3(depth);
-    if (GAP_FILLING) {
+    if (fills_gaps()) {
         depths.y = occluder_or(pixel.receiver, depth_at(layer, max(texel - ivec2(1, 0), ivec2(0))), depth);
         depths.z = occluder_or(pixel.receiver, depth_at(layer, max(texel - ivec2(0, 1), ivec2(0))), depth);
         samples_read += depth > 0.0 ? 2u : 0u;

@@ -2,11 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 // Visibility of the pixel list's pixels from microquads: four neighbouring occluder samples span a quadrangle, whose
 // back-projection sets the bits of the light samples that it hides [SS07]. A sample is hidden once, however many quads
-// hide it; visibility has as many steps as there are samples.
+// hide it; visibility has as many steps as there are samples. Micropatches or microrects may take the quads' place [Schwarz08 §5].
 #include "pass.glsl"
 
 layout(constant_id = 17) const uint LIGHT_SAMPLES = 8u;   // a side of the bitmask
 layout(constant_id = 18) const bool JITTERED = false;     // light samples stand anywhere in their strata
+
+layout(constant_id = 61) const bool MICROQUADS = true;    // occluders are microquads, not micropatches or microrects
 
 const uint SAMPLE_COUNT = LIGHT_SAMPLES * LIGHT_SAMPLES;
 
@@ -15,6 +17,8 @@ const uint SAMPLE_COUNT = LIGHT_SAMPLES * LIGHT_SAMPLES;
 #define SUM_WORDS ((SAMPLE_COUNT + 31u) / 32u)
 #include "pixel_list.glsl"
 #include "scan.glsl"
+#include "microrect.glsl"
+#include "occluder_box.glsl"
 
 // [0, 1)² Where a stratum's sample stands in it; the same for all pixels, so that there is no noise.
 vec2 jitter(uint stratum) {
@@ -41,12 +45,12 @@ bool in_triangle(vec2 q, vec2 a, vec2 b, vec2 c) {
     return all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
 }
 
-// Sets the bits of the samples in the microquad over a cell, if there is one.
-void cover(ivec2 cell, vec4 depths, bool exists) {
+// Sets the bits of the samples in an occluder, if there is one. depths: of its corners, counter-clockwise.
+void cover(Box box, vec4 depths, bool exists) {
     vec2 corner[4];
     bool ahead = exists;
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        vec2 at = vec2(cell) + vec2(i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0);
+        vec2 at = vec2(i == 1 || i == 2 ? box.upper.x : box.lower.x, i >= 2 ? box.upper.y : box.lower.y);
         vec3 q = back_project(pixel.receiver, at - pixel.receiver.t, depths[i]);
         ahead = ahead && q.z > 0.0;
         corner[i] = q.xy / q.z;
@@ -68,29 +72,40 @@ void cover(ivec2 cell, vec4 depths, bool exists) {
     }
 }
 
-// Goes on to the next microquad and stays there; false: there is none left.
-bool find_quad(uint layer, inout Scan scan) {
+// The corners of the occluder at a cell or texel, and their depths.
+Box corners_at(uint layer, ivec2 at, out vec4 depths) {
+    if (MICROQUADS) depths = depths_of(layer, at);
+    else depths = vec4(box_depth(layer, at));
+    return MICROQUADS ? Box(vec2(at), vec2(at) + 1.0) : box_at(at);
+}
+
+// Goes on to the next occluder and stays there; false: there is none left.
+bool find_occluder(uint layer, inout Scan scan) {
     bool found = false;
     SEARCH_WHILE(!found && !at_end(scan)) {
-        found = mask_of(depths_of(layer, scan.at), vec4(pixel.receiver.biased)) == 15u;
+        vec4 depths;
+        corners_at(layer, scan.at, depths);
+        found = mask_of(depths, vec4(pixel.receiver.biased)) == 15u;
         if (!found) advance(scan);
         ++nodes_visited;
-        samples_read += 4u;
+        samples_read += MICROQUADS ? 4u : 1u;
     }
     edges_extracted += uint(found);
     return found;
 }
 
-// The loops are nested so that invocations side by side look for microquads together and set bits together.
+// The loops are nested so that invocations side by side look for occluders together and set bits together.
 void sum_layer(uint layer, inout Scan scan) {
     REPEAT_WHILE(!at_end(scan)) {
-        bool found = find_quad(layer, scan);
-        cover(scan.at, depths_of(layer, scan.at), found);
+        bool found = find_occluder(layer, scan);
+        vec4 depths;
+        Box box = corners_at(layer, scan.at, depths);
+        cover(box, depths, found);
         if (found) advance(scan);
     }
 }
 
-Progress sum_kernel(Progress from) { return sum_layers(pixel.first, pixel.last, from); }
+Progress sum_kernel(Progress from) { return sum_layers(pixel.first, pixel.last + (MICROQUADS ? 0 : 1 + BOX_REACH), from); }
 
 // Share of the light's samples that are covered.
 float hidden_share() {

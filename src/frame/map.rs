@@ -1,7 +1,7 @@
 //! A view's shadow map, fitted to what can cast on what is visible, and the structures over it.
 
 use super::pass::{Domain, Drawn, Lent, Pass, Work};
-use super::resource::{Resource, Shape};
+use super::resource::{Resource, Shape, Sizes};
 use super::{Casters, Density};
 use crate::gpu::ImageKind;
 use crate::shared::{self, Fit, SECTOR_STEPS, View};
@@ -76,6 +76,10 @@ const HIERARCHY_16: Pass = building("hierarchy_16.comp");
 const COARSE_MAP: Pass =
     Pass::dispatch("coarse_map", "coarse_map.comp", Domain::PyramidLevel).lasting();
 
+/// A coarser level of microrects [Schwarz08 §5.2].
+const MICRORECTS: Pass =
+    Pass::dispatch("microrects", "microrects.comp", Domain::PyramidLevel).lasting();
+
 const fn building(shader: &'static str) -> Pass {
     Pass::dispatch("hierarchy", shader, Domain::HierarchyLevel).lasting()
 }
@@ -100,6 +104,8 @@ pub struct Structures {
     pub layers: u32,
     /// [level] Coarser than the map.
     pub coarse_levels: u32,
+    /// They are of microrects.
+    pub microrects: bool,
 }
 
 /// A hierarchy of levels below `levels` over a map of `map` × `map` texels, with bounds of 16 or 32 bits.
@@ -132,12 +138,23 @@ pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
     // The lowest two are built at once.
     let built = (0..structures.levels).filter(|&level| level != 1);
     passes.extend(built.map(|level| (hierarchy, level)));
-    passes.extend((1..=structures.coarse_levels).map(|level| (COARSE_MAP, level)));
+    let coarser = match structures.microrects {
+        true => MICRORECTS,
+        false => COARSE_MAP,
+    };
+    passes.extend((1..=structures.coarse_levels).map(|level| (coarser, level)));
     for layer in 0..structures.layers {
         passes.extend((layer > 0).then_some((PEEL, layer)));
         passes.push((KEEP_LAYER, layer));
     }
     passes
+}
+
+/// [texel] Of all coarser levels: their sides halve, from half of the next power of two on.
+fn coarse_texels(sizes: &Sizes) -> u64 {
+    let side = u64::from(sizes.map.next_power_of_two());
+    let last = side >> sizes.coarse_levels;
+    (side * side - last * last) / 3
 }
 
 /// What passes draw and build.
@@ -162,10 +179,10 @@ pub const RESOURCES: &[Resource] = &[
         hierarchy_shape(s.density, s.map, s.levels, s.bounds_bits)
     }),
     Resource::new("coarse_map", |s| {
-        // Sides halve, from half of the next power of two on.
-        let side = u64::from(s.map.next_power_of_two());
-        let last = side >> s.coarse_levels;
-        Shape::array::<[f32; 2]>((side * side - last * last) / 3)
+        Shape::array::<[f32; 2]>(coarse_texels(s)).when(!s.microrects)
+    }),
+    Resource::new("microrects", |s| {
+        Shape::array::<[u32; 3]>(coarse_texels(s)).when(s.microrects)
     }),
     Resource::new("layers", |s| {
         Shape::layers(ImageKind::Layers, (s.map, s.map), s.layers)

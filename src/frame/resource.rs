@@ -61,6 +61,8 @@ pub struct Sizes {
     pub layers: u32,
     /// [level] Coarser than the map that are kept; 0 = no budget limits quality.
     pub coarse_levels: u32,
+    /// They are of microrects.
+    pub microrects: bool,
     /// Pixels have budgets of their own, and an image of shares is given for them.
     pub budgets_vary: bool,
     pub budget_mapped: bool,

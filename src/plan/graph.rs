@@ -52,6 +52,7 @@ impl Plan {
             bounds_bits: self.bounds_bits,
             layers: recipe.layers,
             coarse_levels: recipe.coarse_levels,
+            microrects: recipe.microrects,
         }
     }
 

@@ -83,6 +83,7 @@ impl Plan {
             density: self.density,
             layers: most(|recipe| recipe.layers).unwrap_or(0),
             coarse_levels: most(|recipe| recipe.coarse_levels).unwrap_or(0),
+            microrects: self.needs(|recipe| recipe.microrects),
             budgets_vary: self.budgets_vary(),
             budget_mapped: self.budgets_vary() && self.budget.mapped,
             kernels: self.needs(|recipe| recipe.kernels),

@@ -5,7 +5,7 @@
 //! jittered samples break them up, always in the same way); occluders shrink by half a texel, and what is a single
 //! sample wide is missed; with one layer, what the centre of the light cannot see is missed too.
 
-use super::{Method, Recipe, Settings, budget_knobs, with};
+use super::{Method, Occluders, Recipe, Settings, budget_knobs, with};
 
 pub struct Bitmask;
 
@@ -29,11 +29,31 @@ impl Method for Bitmask {
     }
 
     fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
-        let mut knobs = vec!["split", "light-samples", "pattern", "layers"];
+        let mut knobs = vec!["split", "light-samples", "pattern", "layers", "occluders"];
         if is_single(settings) {
             knobs.extend(budget_knobs(settings));
         }
         knobs
+    }
+
+    fn occluders(&self) -> &'static [Occluders] {
+        &[
+            Occluders::Microquads,
+            Occluders::Micropatches,
+            Occluders::Microrects,
+        ]
+    }
+
+    fn constants(&self, settings: &Settings) -> Vec<(&'static str, u32)> {
+        let kind = settings.occluders;
+        vec![
+            ("MICROQUADS", (kind == Occluders::Microquads).into()),
+            ("MICRORECTS", (kind == Occluders::Microrects).into()),
+        ]
+    }
+
+    fn make_usual(&self, settings: &mut Settings) {
+        (settings.split, settings.occluders) = (1, Occluders::Microquads);
     }
 
     fn variants(&self, usual: Settings) -> Vec<Settings> {

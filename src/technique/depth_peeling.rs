@@ -24,10 +24,21 @@ impl Method for DepthPeeling {
         vec!["split", "layers", "occluders"]
     }
 
+    fn occluders(&self) -> &'static [Occluders] {
+        &[Occluders::Micropatches, Occluders::Contours]
+    }
+
+    fn constants(&self, settings: &Settings) -> Vec<(&'static str, u32)> {
+        vec![(
+            "CONTOURS",
+            (settings.occluders == Occluders::Contours).into(),
+        )]
+    }
+
     fn bias(&self, settings: &Settings) -> f32 {
         match settings.occluders {
             Occluders::Contours => super::CONTOUR_BIAS,
-            Occluders::Micropatches => 1.0,
+            _ => 1.0,
         }
     }
 

@@ -72,12 +72,16 @@ choice! {
 }
 
 choice! {
-    /// What the texels of a peeled layer stand for.
+    /// What texels stand for.
     enum Occluders, "kind of occluder" {
         /// The texels of a peeled layer are rectangles.
         Micropatches = "micropatches",
         /// The texels of a peeled layer have contours.
         Contours = "contours",
+        /// Four neighbouring samples span a quadrangle.
+        Microquads = "microquads",
+        /// As micropatches, but that texels of coarser levels are rectangles of whatever size fits [Schwarz08 §5.2].
+        Microrects = "microrects",
     }
 }
 
@@ -269,14 +273,15 @@ settings! {
         .within(1, 4, "the number of layers of a shadow map is {}")
         .swept("layers", "NUMBERS", "Values of --layers [default: each technique's usual ones]");
 
-    /// `DepthPeeling` only.
+    /// `DepthPeeling`, `Micropatch` and `Bitmask` only, each some of them ([`Method::occluders`](super::Method::occluders)).
     occluders: Occluders = Occluders::Micropatches,
         Row::value(
             "occluders",
             "KIND",
-            "With depth-peeling: what a layer's texels stand for, {}",
+            "What texels stand for, of {}: the first two with depth-peeling, micropatches or microrects with micropatch, all \
+             but contours with bitmask [default: microquads with bitmask, else micropatches]",
         )
-        .sets("CONTOURS");
+        .depends();
 
     /// [sample] [1, 1024] `Pcss` only: of the blocker search.
     blocker_samples: u32 = 16,
@@ -589,6 +594,19 @@ impl Settings {
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) when a setting is out of its range.
     pub fn validate(&self) -> Result<()> {
-        KNOBS.iter().try_for_each(|knob| knob.check(self))
+        KNOBS.iter().try_for_each(|knob| knob.check(self))?;
+        let known = self.technique.method().occluders();
+        match known.is_empty() || known.contains(&self.occluders) {
+            true => Ok(()),
+            false => {
+                let names: Vec<String> = known.iter().map(Occluders::to_string).collect();
+                Err(crate::Error::Invalid(format!(
+                    "the occluders of {} are {}, not {}",
+                    self.technique,
+                    names.join(" or "),
+                    self.occluders
+                )))
+            }
+        }
     }
 }
