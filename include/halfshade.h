@@ -207,6 +207,12 @@
 // `occluders`: The texels of a peeled layer have contours.
 #define HS_OCCLUDERS_CONTOURS 1
 
+// `occluders`: Four neighbouring samples span a quadrangle.
+#define HS_OCCLUDERS_MICROQUADS 2
+
+// `occluders`: As micropatches, but that texels of coarser levels are rectangles of whatever size fits [Schwarz08 §5.2].
+#define HS_OCCLUDERS_MICRORECTS 3
+
 // `neighbours`: From three neighbours, at distances that double.
 #define HS_NEIGHBOURS_3 0
 

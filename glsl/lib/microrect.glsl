@@ -2,7 +2,7 @@
 // [Schwarz08 §5.2], which are where the occluders in and round a texel are. A microrect of level l belongs to the map's texel
 // (x, y) · 2^l, its reference point, and ends before those of its neighbours. Needs map.glsl for reading, coarse_map.glsl for both.
 
-layout(constant_id = 60) const bool MICRORECTS = false;  // coarser levels have microrects
+layout(constant_id = 62) const bool MICRORECTS = false;  // coarser levels have microrects
 
 struct Microrect {
     // Nearest to the light; 0 = there is none.

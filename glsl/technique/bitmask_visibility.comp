@@ -8,7 +8,7 @@
 layout(constant_id = 17) const uint LIGHT_SAMPLES = 8u;   // a side of the bitmask
 layout(constant_id = 18) const bool JITTERED = false;     // light samples stand anywhere in their strata
 
-layout(constant_id = 61) const bool MICROQUADS = true;    // occluders are microquads, not micropatches or microrects
+layout(constant_id = 63) const bool MICROQUADS = true;    // occluders are microquads, not micropatches or microrects
 
 const uint SAMPLE_COUNT = LIGHT_SAMPLES * LIGHT_SAMPLES;
 
