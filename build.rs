@@ -18,6 +18,7 @@ const UNOPTIMIZED: &str = "HALFSHADE_UNOPTIMIZED_SHADERS";
 fn main() {
     println!("cargo:rerun-if-changed=glsl");
     println!("cargo:rerun-if-changed=src/shared.rs");
+    println!("cargo:rerun-if-changed=src/shared/declare.rs");
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
     clear_shaders(&out);
     let header = shared_header();

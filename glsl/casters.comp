@@ -27,10 +27,10 @@ struct Reach {
 
 const float NONE = -1e38;
 
-vec3 receiver_corner(Fit fit, float side) {
-    return side * vec3(value_of(fit.receiver_bounds[side > 0.0 ? 0 : 3], 0.0),
-                       value_of(fit.receiver_bounds[side > 0.0 ? 1 : 4], 0.0),
-                       value_of(fit.receiver_bounds[side > 0.0 ? 2 : 5], 0.0));
+// What bounds hold: upper ones of x, y, z, −x, −y, −z.
+Box box_of(uint bounds[6]) {
+    return Box(-vec3(value_of(bounds[3], 0.0), value_of(bounds[4], 0.0), value_of(bounds[5], 0.0)),
+               vec3(value_of(bounds[0], 0.0), value_of(bounds[1], 0.0), value_of(bounds[2], 0.0)));
 }
 
 // The largest normal · (x − at) − rounding · |x|₁ of all points x of a box: how far it reaches beyond the plane through `at`
@@ -43,22 +43,47 @@ float reach_beyond(Box box, vec3 normal, vec3 at, float rounding) {
     return reach.x + reach.y + reach.z;
 }
 
-// Whether the light or a receiver is on the side of the triangle's plane that `normal` points to, beyond rounding. Corners
-// are exact relative to the light (caster_position.glsl), receivers are found from positions relative to the eye.
-// `center`: the sub-light's, relative to what positions are.
-bool reaches_beyond(vec3 normal, vec3 at, Box light, Box receivers, vec3 center) {
-    float of_corner = dot(abs(at), vec3(1.0)) * length(normal);
-    float of_light = reach_beyond(light, normal, at, 0.0) - CORNER_ROUNDING * of_corner;
-    float rounding = PLANE_ROUNDING * length(normal);
-    float of_receivers = reach_beyond(receivers, normal, at, rounding) - PLANE_ROUNDING * of_corner
-                       - rounding * dot(abs(center), vec3(1.0));
-    return max(of_light, of_receivers) > 0.0;
+// A triangle's plane, in the frame of the view's face, which parallel rays map, and in the scene's.
+struct Plane {
+    // Towards the same side; of any length.
+    vec3 normal;
+    vec3 scene_normal;
+    // Of one of its corners, from the light's centre.
+    vec3 at;
+    vec3 scene_at;
+};
+
+Plane plane_of(View view, vec3 ways[3]) {
+    Plane plane;
+    plane.scene_normal = cross(ways[1] - ways[0], ways[2] - ways[0]);
+    plane.scene_at = ways[0];
+    plane.normal = to_face(view, mapped_normal(view, ways[0], plane.scene_normal));
+    plane.at = to_face(view, mapped(view, ways[0]));
+    return plane;
 }
 
-bool one_sided(vec3 corner[3], Box light, Box receivers, vec3 center) {
-    vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    return !reaches_beyond(normal, corner[0], light, receivers, center)
-        || !reaches_beyond(-normal, corner[0], light, receivers, center);
+// By how much receivers in a box reach beyond a plane and beyond rounding. They are found from positions relative to the eye, from
+// which the light's centre is at `center`.
+float receivers_beyond(Box receivers, vec3 normal, vec3 at, vec3 center) {
+    float rounding = PLANE_ROUNDING * length(normal);
+    return reach_beyond(receivers, normal, at, rounding) - rounding * (dot(abs(at), vec3(1.0)) + dot(abs(center), vec3(1.0)));
+}
+
+// Whether the light or a receiver is on the side of the triangle's plane that `side` times its normal points to, beyond rounding.
+// Corners are exact relative to the light (caster_position.glsl). No receiver reaches farther than each of the boxes does:
+// level ground is at the border of the scene's, however the light is turned.
+bool reaches_beyond(Plane plane, float side, View view, Box light, Box receivers, Box in_scene) {
+    vec3 normal = side * plane.normal;
+    float of_light = reach_beyond(light, normal, plane.at, 0.0)
+                   - CORNER_ROUNDING * dot(abs(plane.at), vec3(1.0)) * length(normal);
+    return of_light > 0.0
+        || (receivers_beyond(receivers, normal, plane.at, view.center) > 0.0
+            && receivers_beyond(in_scene, side * plane.scene_normal, plane.scene_at, view.center) > 0.0);
+}
+
+bool one_sided(Plane plane, View view, Box light, Box receivers, Box in_scene) {
+    return !reaches_beyond(plane, 1.0, view, light, receivers, in_scene)
+        || !reaches_beyond(plane, -1.0, view, light, receivers, in_scene);
 }
 
 void include(inout Reach reach, vec3 p) {
@@ -119,7 +144,9 @@ void main() {
     if (fit.receiver_count == 0u) return;
     View view = views[push.index];
     Box light = box_of_light(view);
-    Box receivers = Box(receiver_corner(fit, -1.0), receiver_corner(fit, 1.0));
+    Box receivers = box_of(fit.receiver_bounds);
+    Box in_scene = box_of(fit.receiver_box);
+    in_scene = Box(in_scene.lower - view.center, in_scene.upper - view.center);
     vec4 slopes = slopes_of(fit);
     float depth_max = max(receivers.upper.z, light.upper.z);
     Reach reach = Reach(vec4(NONE), NONE);
@@ -127,9 +154,11 @@ void main() {
     for (uint index = gl_GlobalInvocationID.x; index < frame.opaque_count + frame.masked_count; index += stride) {
         if (!casts(index)) continue;
         uvec3 triangle = triangles[index];
+        vec3 ways[3];
         vec3 corner[3];
-        for (int i = 0; i < 3; ++i) corner[i] = caster_position(view, triangle[i]);
-        if (!one_sided(corner, light, receivers, view.center)
+        for (int i = 0; i < 3; ++i) ways[i] = caster_way(view, triangle[i]);
+        for (int i = 0; i < 3; ++i) corner[i] = to_face(view, mapped(view, ways[i]));
+        if (!one_sided(plane_of(view, ways), view, light, receivers, in_scene)
             && include_triangle(reach, view, light, slopes, depth_max, corner))
             append(triangle, index >= frame.opaque_count);
     }

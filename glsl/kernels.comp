@@ -1,13 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A kernel for each pixel, shrunk by repeated queries of the hierarchy, and the pixels that need no integration [SS07; Yang09 alg. 1,
-// step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds every cell that adds to the pixel's
-// integral.
+// A kernel for each pixel of the tiles that a view has to look at, shrunk by repeated queries of the hierarchy, and the pixels that
+// need no integration [SS07; Yang09 alg. 1, step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds
+// every cell that adds to the pixel's integral.
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "quadtree.glsl"
 #include "hierarchy.glsl"
 #include "kernel.glsl"
+#include "shrink.glsl"
 #include "coarse_map.glsl"
 #include "quality.glsl"
 #include "occlusion.glsl"
@@ -17,6 +18,7 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(views);
 readonly BUFFER(fits);
+readonly BUFFER(tiles);
 writeonly BUFFER(kernels);
 writeonly BUFFER(quality);
 BUFFER(counters);
@@ -28,17 +30,7 @@ TEXTURE(shadow_map);
 writeonly BUFFER(windows);
 BUFFER(lists);
 
-layout(constant_id = 33) const bool WINDOWS = false;  // list what local packets form in
-
 shared uint penumbra[2];
-
-// Queries that shrink a kernel; hardly any pixel takes as many.
-const int ROUNDS_MAX = 8;
-
-// [level] From the third query on, and where one has changed nothing, nodes are so much smaller: where they reach beyond the
-// kernel, smaller ones do less so.
-const int FINER = SPARSEST > 0u ? 1 : 0;
-const int COARSE_ROUNDS = 2;
 
 // [cell] Kernels no wider and no higher are looked at sample by sample. A tilted surface without occluders has such a
 // kernel of its own, for bounds do not tell it from an occluder: uphill it comes nearer to the light.
@@ -60,10 +52,9 @@ Cells queried(View view, Cells cells, float budget) {
     return grown_cells(view, cells, coarse_level(cells, budget));
 }
 
-Kernel kernel_of(View view, Fit fit, Receiver receiver, float budget) {
+// depth_max: no occluder of the pixel is nearer to the light.
+Kernel kernel_of(View view, Fit fit, Receiver receiver, float budget, float depth_max) {
     Kernel kernel = Kernel(KERNEL_LIT, 0u, 0u, 0.0, 0.0);
-    // The projection's near plane is the nearest caster: depth 1.
-    float depth_max = 1.0;
     Cells cells;
     vec2 range = vec2(0.0);
     int finer = 0;
@@ -73,10 +64,7 @@ Kernel kernel_of(View view, Fit fit, Receiver receiver, float budget) {
         if (any(greaterThan(cells.first, cells.last))) return kernel;
         Cells asked = queried(view, cells, budget);
         range = hierarchy_query(view, asked.first, asked.last, int(fit.level_count), finer);
-        bool stalls = range.y >= depth_max;
-        if (stalls && finer == FINER) break;
-        if (stalls || round >= COARSE_ROUNDS) finer = FINER;
-        depth_max = min(depth_max, range.y);
+        if (!shrinks(range.y, round, depth_max, finer)) break;
     }
     if (depth_max <= receiver.biased) return kernel;
     bool is_coarse = BUDGET > 0u && coarse_level(cells, budget) > 0;
@@ -105,16 +93,17 @@ void count(uint status) {
     if (status == KERNEL_PENUMBRA) atomicAdd(counters.penumbra, 1u);
 }
 
-// The kernel of a pixel of the image.
-Kernel kernel_at(View view, uvec2 pixel) {
+// The kernel of a pixel of a tile.
+Kernel kernel_at(View view, Tile tile, uvec2 pixel) {
     SurfacePoint point = surface_at(pixel);
     vec3 to_point = point.position - view.center;
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
     if (!point.exists || !in_view(view, point.position, point.normal)) return kernel;
-    kernel.status = KERNEL_LIT;
+    kernel.status = tile.status;
+    if (tile.status != KERNEL_PENUMBRA) return kernel;
     Fit fit = fits[push.index];
     float budget = budget_of(index_of(pixel));
-    if (fit.level_count > 0u) kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error), budget);
+    kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error), budget, tile.depth_max);
     if (BUDGET > 0u && kernel.status == KERNEL_PENUMBRA) choose_quality(index_of(pixel), kernel, budget);
     return kernel;
 }
@@ -127,7 +116,7 @@ void append_window(Window window) {
 }
 
 // Lists those of these pixels that are to be integrated, as many to an entry as a subgroup has lanes.
-void list_window(bool is_penumbra) {
+void list_window(uvec2 place_of_tile, bool is_penumbra) {
     if (gl_LocalInvocationIndex < 2u) penumbra[gl_LocalInvocationIndex] = 0u;
     barrier();
     uint place = place_in_window(gl_LocalInvocationID.xy);
@@ -140,22 +129,24 @@ void list_window(bool is_penumbra) {
     uvec2 left = uvec2(penumbra[0], penumbra[1]);
     while ((left.x | left.y) != 0u) {
         uvec2 some = first_bits(left, max(gl_SubgroupSize, WINDOW_PIXELS_MIN));
-        append_window(Window(gl_WorkGroupID.xy, some));
+        append_window(Window(place_of_tile, some));
         left &= ~some;
     }
 }
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    uint index = index_of(pixel);
+    uint at = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
+    if (at >= lists[push.index].tile_count) return;
+    Tile tile = tiles[at];
+    uvec2 pixel = tile.place * TILE_SIZE + gl_LocalInvocationID.xy;
     View view = views[push.index];
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
     if (all(lessThan(pixel, frame.size))) {
-        kernel = kernel_at(view, pixel);
+        uint index = index_of(pixel);
+        kernel = kernel_at(view, tile, pixel);
         kernels[index] = kernel;
-        bool umbra = kernel.status == KERNEL_UMBRA;
-        if (!ACCUMULATE || umbra) add_occluded(index, umbra ? view.weight : 0.0);
+        if (kernel.status == KERNEL_UMBRA) add_occluded(index, view.weight);
         if (COUNT) count(kernel.status);
     }
-    if (WINDOWS) list_window(kernel.status == KERNEL_PENUMBRA);
+    if (WINDOWS) list_window(tile.place, kernel.status == KERNEL_PENUMBRA);
 }

@@ -17,83 +17,11 @@ pub type uvec2 = [u32; 2];
 pub type uvec3 = [u32; 3];
 pub type uvec4 = [u32; 4];
 
-/// A field as GLSL sees it.
-pub struct Field {
-    pub name: &'static str,
-    /// A GLSL type name.
-    pub glsl: &'static str,
-    /// Number of array elements; 0 = not an array.
-    pub count: usize,
-    /// [byte] From the start of the struct.
-    pub offset: usize,
-}
+#[path = "shared/declare.rs"]
+#[macro_use]
+mod declare;
 
-/// A struct as GLSL sees it.
-pub struct Layout {
-    pub name: &'static str,
-    pub fields: &'static [Field],
-    /// [byte]
-    pub size: usize,
-}
-
-macro_rules! field_type {
-    ($ty:ident) => {
-        $ty
-    };
-    ($ty:ident $count:expr) => {
-        [$ty; $count]
-    };
-}
-
-macro_rules! field_count {
-    () => {
-        0
-    };
-    ($count:expr) => {
-        $count
-    };
-}
-
-macro_rules! shared {
-    ($($(#[$doc:meta])* struct $name:ident {
-        $($(#[$field_doc:meta])* $field:ident: $ty:ident $([$count:expr])?,)*
-    })*) => {
-        $($(#[$doc])*
-        #[repr(C)]
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-        pub struct $name {
-            $($(#[$field_doc])* pub $field: field_type!($ty $($count)?),)*
-        })*
-
-        /// Every shared struct, for the GLSL generator and the layout test.
-        pub const LAYOUTS: &[Layout] = &[$(Layout {
-            name: stringify!($name),
-            fields: &[$(Field {
-                name: stringify!($field),
-                glsl: stringify!($ty),
-                count: field_count!($($count)?),
-                offset: std::mem::offset_of!($name, $field),
-            },)*],
-            size: std::mem::size_of::<$name>(),
-        },)*];
-    };
-}
-
-macro_rules! shared_constants {
-    ($($(#[$doc:meta])* $name:ident: $ty:ident $([$count:literal])? = $value:expr;)*) => {
-        $($(#[$doc])* pub const $name: field_type!($ty $($count)?) = $value;)*
-
-        /// Name, GLSL type and value of every shared constant, for the GLSL generator.
-        pub fn constants() -> Vec<(&'static str, &'static str, String)> {
-            let initializer = |value: String| value.replace('[', "{").replace(']', "}");
-            vec![$((
-                stringify!($name),
-                concat!(stringify!($ty), $("[", stringify!($count), "]")?),
-                initializer(format!("{:?}", $name)),
-            ),)*]
-        }
-    };
-}
+pub use declare::{Field, Layout};
 
 shared_constants! {
     /// [level] The largest kernel starts from up to 4×4 roots: the two levels above them take longer to build than they
@@ -324,6 +252,8 @@ shared! {
         receiver_count: uint,
         /// [scene units] Upper bounds of x, y, z, −x, −y, −z over receivers in the face's frame.
         receiver_bounds: uint [6],
+        /// [scene units] The same relative to the eye: what is level in the scene is level in this box.
+        receiver_box: uint [6],
         /// Upper bounds of the slopes of the four planes between light and receivers: +x, +y, −x, −y.
         receiver_slopes: uint [4],
         /// Upper bounds of x/z, y/z, −x/z, −y/z and −z over casters.
@@ -346,6 +276,31 @@ shared! {
         unfinished: uint,
     }
 
+    /// Bounds of the visible surface in a tile of the image.
+    struct TileBounds {
+        /// [scene units] Box of positions, relative to the eye; empty where there is no surface.
+        lower: vec3,
+        upper: vec3,
+        /// Box of the unit normals.
+        normal_lower: vec3,
+        normal_upper: vec3,
+        /// [scene units] Range of normal · position.
+        height_lower: float,
+        height_upper: float,
+        /// [scene units] By how much positions may be off, at most.
+        error: float,
+    }
+
+    /// A tile of the image that a view has to look at.
+    struct Tile {
+        /// [tile]
+        place: uvec2,
+        /// The `KERNEL_…` of all pixels in the view; KERNEL_PENUMBRA: each has one of its own.
+        status: uint,
+        /// No occluder of its pixels is nearer to the light.
+        depth_max: float,
+    }
+
     /// The dispatches of a view's lists in a round. All zero at the start of a frame.
     struct Round {
         /// VkDispatchIndirectCommand of each list.
@@ -357,6 +312,9 @@ shared! {
     struct Lists {
         packet_count: uint,
         pixel_count: uint,
+        tile_count: uint,
+        /// VkDispatchIndirectCommand over the tiles.
+        tile_groups: uvec3,
     }
 
     /// A pixel's kernel: the dual cells that its sub-light can project to [Yang09 eq. 1].

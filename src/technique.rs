@@ -8,7 +8,11 @@
 
 mod asked;
 mod choice;
+mod field;
+mod kinds;
 mod knob;
+mod row;
+mod running;
 mod settings;
 
 mod bitmask;
@@ -23,18 +27,17 @@ mod pixel_contour;
 mod reference_maps;
 mod shadow_width;
 
-use crate::frame::kernel::{CLASSIFY, KERNELS, SMOOTH_QUALITY, blended};
+use crate::frame::kernel::{CLASSIFY, KERNELS, SMOOTH_QUALITY, TILES, blended};
 use crate::frame::{Domain, Pass, Resource, Work};
 use crate::scene::AreaLight;
 use crate::shared::FRONT_REACH;
 use crate::sub_light::{self, Part};
 
 pub use choice::Choice;
-pub use knob::{Row, SweepFlag};
+pub use kinds::{Accumulate, Hierarchy, Leaf, Mapping, Neighbours, Occluders, Pattern};
 pub use reference_maps::POINT_REACH;
-pub use settings::{
-    Accumulate, Hierarchy, KNOBS, Knob, Leaf, Mapping, Neighbours, Occluders, Pattern, Settings,
-};
+pub use row::{Row, SweepFlag};
+pub use settings::{KNOBS, Knob, Settings};
 
 /// Registers techniques, in the order of their numbers in the C library: name of the variant, name for people, and what
 /// implements it.
@@ -184,7 +187,7 @@ impl Recipe {
             kernels: true,
             words: 1,
             turns: TURNS_OF_SCANS,
-            passes: once([KERNELS, CLASSIFY, pass]),
+            passes: once([TILES, KERNELS, CLASSIFY, pass]),
             ..Self::default()
         }
     }

@@ -17,3 +17,4 @@ pub mod receiver;
 pub mod resolve;
 pub mod shadow_width;
 pub mod soft_shadow_map;
+pub mod tile;

@@ -9,10 +9,11 @@ use std::sync::Arc;
 use common::{MAP, Point, SIZE, Traces, points, renderer, shot, traces, with_device};
 use glam::{DVec3, Vec3};
 use halfshade::gpu::Gpu;
-use halfshade::render::DEFAULT_COSTS;
+use halfshade::render::{DEFAULT_COSTS, Renderer};
 use halfshade::scene::LightShape;
 use halfshade::shared::{
-    KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, Packet, TILE_SIZE, View, Window,
+    KERNEL_LIT, KERNEL_NONE, KERNEL_PENUMBRA, KERNEL_UMBRA, Kernel, Packet, TILE_SIZE, TileBounds,
+    View, Window,
 };
 use halfshade::shot::Shot;
 use halfshade::technique::{Hierarchy as Density, Leaf, Mapping, Settings};
@@ -22,7 +23,7 @@ use halfshade::twin::hierarchy::Hierarchy;
 use halfshade::twin::kernels::{kernel_of, unpacked};
 use halfshade::twin::radial::SubLight;
 use halfshade::twin::receiver::{Receiver, in_view, project};
-use halfshade::twin::resolve;
+use halfshade::twin::{resolve, tile};
 
 /// [visibility] The device sums some hundred areas in f32, each with a rounding error of a few 1e-7 of the
 /// light, and interpolates the sectors of discs.
@@ -73,26 +74,89 @@ fn check_hierarchy<'a>(traces: &'a Traces, settings: &Settings) -> Hierarchy<'a>
     hierarchy
 }
 
-/// The twin's kernels, equal to the device's in every pixel and bit.
-fn check_kernels(traces: &Traces, receivers: &[Seen], hierarchy: &Hierarchy) -> Vec<Kernel> {
+/// The pixels of a tile, as far as it is in the image.
+fn pixels_of([column, row]: [u32; 2]) -> impl Iterator<Item = usize> {
+    let along = |tile: u32| (tile * TILE_SIZE..(tile + 1) * TILE_SIZE).take_while(|&i| i < SIZE);
+    along(row).flat_map(move |y| along(column).map(move |x| (y * SIZE + x) as usize))
+}
+
+/// Bounds of tiles, equal to the twin's in every bit but the sign of zero.
+fn check_tile_bounds(renderer: &Renderer, points: &[Option<Point>]) {
+    let along = SIZE.div_ceil(TILE_SIZE);
+    let found: Vec<TileBounds> = renderer
+        .read_buffer("tile_bounds", (along * along) as usize)
+        .expect("tile_bounds");
+    for (i, found) in (0..).zip(found) {
+        let seen = pixels_of([i % along, i / along]).filter_map(|pixel| points[pixel]);
+        match tile::bounds(seen.map(|point| (point.position, point.normal))) {
+            Some(wanted) => assert_eq!(found, wanted, "tile {i}"),
+            None => assert!(found.lower[0] > found.upper[0], "tile {i}: {found:?}"),
+        }
+    }
+}
+
+/// What is decided about a tile is so for each of its pixels: a kernel that has all of its occluders has none, or nothing else.
+fn is_so(status: u32, receiver: &Receiver, kernel: &Kernel, map: &ShadowMap) -> bool {
+    let ([left, below], [right, above]) = (unpacked(kernel.first), unpacked(kernel.last));
+    let limit = receiver.limit();
+    let occludes =
+        |[x, y]: [i32; 2]| limit.is_passed([x, y], map.depths[(y * map.size + x) as usize]);
+    let mut samples = (below..=above + 1).flat_map(|y| (left..=right + 1).map(move |x| [x, y]));
+    match (status, kernel.status) {
+        (KERNEL_LIT, KERNEL_PENUMBRA) => !samples.any(occludes),
+        (KERNEL_UMBRA, KERNEL_PENUMBRA) => samples.all(occludes),
+        (decided, found) => decided == found,
+    }
+}
+
+/// The twin's kernels, equal to the device's in every pixel and bit, but where a tile is decided as a whole.
+fn check_kernels(
+    traces: &Traces,
+    receivers: &[Seen],
+    hierarchy: &Hierarchy,
+    decided: &mut [usize; 2],
+) -> Vec<Kernel> {
     let (view, oblique) = (&traces.planned.view, traces.planned.oblique);
     let map = ShadowMap {
         size: MAP as i32,
         depths: &traces.map,
     };
+    let of =
+        |receiver, depth_max| kernel_of(view, oblique, receiver, &map, hierarchy, None, depth_max);
+    let of_status = |status| Kernel {
+        status,
+        ..Kernel::default()
+    };
+    let mut kernels = vec![of_status(KERNEL_NONE); receivers.len()];
+    // Where kernels are counted, all tiles are listed.
+    assert_eq!(traces.tiles.len() as u32, SIZE.div_ceil(TILE_SIZE).pow(2));
+    for tile in &traces.tiles {
+        let mut statuses = BTreeSet::new();
+        for pixel in pixels_of(tile.place) {
+            let Some(receiver) = &receivers[pixel] else {
+                continue;
+            };
+            kernels[pixel] = match tile.status {
+                KERNEL_PENUMBRA => of(receiver, tile.depth_max),
+                status => of_status(status),
+            };
+            let alone = of(receiver, 1.0);
+            let status = tile.status;
+            assert!(
+                status == KERNEL_PENUMBRA || is_so(status, receiver, &alone, &map),
+                "{tile:?}, pixel {pixel}: {alone:?}"
+            );
+            statuses.insert(alone.status);
+        }
+        let uniform = statuses.len() <= 1 && !statuses.contains(&KERNEL_PENUMBRA);
+        decided[0] += usize::from(uniform && tile.status != KERNEL_PENUMBRA);
+        decided[1] += usize::from(uniform);
+    }
     let mut statuses = [0u32; 4];
-    let mut kernels = Vec::new();
-    for (i, (receiver, found)) in receivers.iter().zip(&traces.kernels).enumerate() {
-        let none = Kernel {
-            status: KERNEL_NONE,
-            ..Kernel::default()
-        };
-        let of = |receiver| kernel_of(view, oblique, &receiver, &map, hierarchy, None);
-        let wanted = receiver.map_or(none, of);
+    for (i, (found, wanted)) in traces.kernels.iter().zip(&kernels).enumerate() {
         let pixel = (i as u32 % SIZE, i as u32 / SIZE);
-        assert_eq!(*found, wanted, "pixel {pixel:?}, {receiver:?}");
+        assert_eq!(found, wanted, "pixel {pixel:?}, {:?}", receivers[i]);
         statuses[wanted.status as usize] += 1;
-        kernels.push(wanted);
     }
     let [before, after] = &traces.counters;
     let counted = [
@@ -309,6 +373,7 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
     let mut hidden = vec![0.0; (SIZE * SIZE) as usize];
     let mut largest: f64 = 0.0;
     let mut undecided = [0; 2];
+    let mut decided = [0; 2];
     for index in 0..light.view_count {
         let traces = traces(&mut renderer, index);
         if traces.fit.level_count == 0 {
@@ -317,7 +382,7 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
         }
         let seen = receivers(&traces, &points(&renderer));
         let hierarchy = check_hierarchy(&traces, &shot.settings);
-        let kernels = check_kernels(&traces, &seen, &hierarchy);
+        let kernels = check_kernels(&traces, &seen, &hierarchy, &mut decided);
         let counted = check_lists(shot, &traces, &seen, &kernels);
         undecided = [undecided[0] + counted[0], undecided[1] + counted[1]];
         largest = largest.max(check_integration(
@@ -331,6 +396,7 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
     renderer.render().expect("the scenes can be rendered");
     let found = renderer.visibility(0).expect("visibility");
     let points = points(&renderer);
+    check_tile_bounds(&renderer, &points);
     let mut summed: f64 = 0.0;
     for i in integrated(shot) {
         let Some(Point { position, normal }) = points[i] else {
@@ -348,9 +414,11 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
     }
     println!(
         "{name}, split {}, {} views: largest difference {largest:.1e} in a view, {summed:.1e} in their sum; \
-         {} of {} packets undecided",
-        shot.settings.split, light.view_count, undecided[0], undecided[1]
+         {} of {} packets undecided; {} of {} tiles without penumbrae decided",
+        shot.settings.split, light.view_count, undecided[0], undecided[1], decided[0], decided[1]
     );
+    // Bounds of tiles are loose where surfaces bend or end.
+    assert!(3 * decided[0] >= decided[1], "{name}: {decided:?}");
     // Widths are small integers, so that the two costs of a packet now and then are the same but for rounding.
     assert!(100 * undecided[0] <= undecided[1], "{name}: {undecided:?}");
 }

@@ -85,7 +85,15 @@ fn check_levels(
         let Some(receiver) = point.as_ref().and_then(|point| receiver(traces, point)) else {
             continue;
         };
-        let wanted = kernel_of(view, oblique, &receiver, &map, &hierarchy, Some(&budget));
+        let wanted = kernel_of(
+            view,
+            oblique,
+            &receiver,
+            &map,
+            &hierarchy,
+            Some(&budget),
+            1.0,
+        );
         assert_eq!(*found, wanted, "pixel {i}");
         if found.status == KERNEL_PENUMBRA {
             let cells = (unpacked(found.first), unpacked(found.last));

@@ -123,6 +123,13 @@ fn siblings() -> Vec<(&'static str, Settings)> {
                 ..usual(Technique::ShadowWidth)
             },
         ),
+        (
+            "shadow-width back faces",
+            Settings {
+                back_faces: true,
+                ..usual(Technique::ShadowWidth)
+            },
+        ),
         ("occluder-driven", usual(Technique::OccluderDriven)),
         (
             "occluder-driven two-sided",

@@ -7,7 +7,8 @@ layout(constant_id = 3) const bool LANES = false;         // a packet's pixels h
 layout(constant_id = 5) const bool DISC_LIGHT = false;    // the sub-light is a disc or cut by one
 layout(constant_id = 6) const bool OBLIQUE = false;       // the map is not parallel to the light
 layout(constant_id = 7) const bool COUNT = false;         // write `counters`
-layout(constant_id = 8) const bool ACCUMULATE = false;    // the light has more than one view
+layout(constant_id = 8) const bool ACCUMULATE = false;    // what views add up is cleared before the first
+layout(constant_id = 33) const bool WINDOWS = false;      // local packets form in windows, which the kernels list
 layout(constant_id = 9) const bool TEXTURED = false;      // the scene has textures and texcoords
 layout(constant_id = 11) const uint LOOP_BUDGET = 60000u; // [turn] of loops that the driver allows an invocation
 layout(constant_id = 12) const uint ROUNDS = 1u;          // [dispatch] in which a list is worked off

@@ -62,6 +62,8 @@
 #define RESOURCE_hierarchy(AS) AS(29, texture2DArray, image2DArray, hierarchy)
 
 // From kernels to visibility.
+#define RESOURCE_tile_bounds ARRAY(61, TileBounds, tile_bounds)
+#define RESOURCE_tiles ARRAY(62, Tile, tiles)
 #define RESOURCE_kernels ARRAY(30, Kernel, kernels)
 #define RESOURCE_windows ARRAY(63, Window, windows)
 #define RESOURCE_budgets ARRAY(45, float, budgets)

@@ -2,8 +2,9 @@
 // is the view's shadow map, but reaches as far as shadows of its texels fall on visible receivers; the receiver map has the same
 // texels. Depths are d = near / z (algorithm.md §1). Needs bounds.glsl and casting.glsl.
 
+#include "bottom_map.glsl"
+
 #define RESOURCE_receiver_map(AS) AS(50, texture2D, image2D, receiver_map)
-#define RESOURCE_bottom_map(AS) AS(51, texture2D, image2D, bottom_map)
 #define RESOURCE_penumbra_extents ARRAY(52, uvec2, penumbra_extents)
 #define RESOURCE_soft_shadows(AS) AS(53, texture2D, image2D, soft_shadows)
 #define RESOURCE_bottom_shadows(AS) AS(54, texture2D, image2D, bottom_shadows)
@@ -48,9 +49,6 @@ Grid grid_of(View view, Fit fit) {
     grid.center = 0.5 * (float(view.map_size) - 1.0) - grid.focal * 0.5 * (lower + upper);
     return grid;
 }
-
-// The depth that a map of the farthest holds where it stores 1 − d, so that the farthest is what its test keeps; 0 = empty.
-float farthest_of(float stored) { return stored > 0.0 ? 1.0 - stored : 0.0; }
 
 // The depth of a texel's receiver; 0 = none.
 float receiver_of(float stored) { return TELLS_CASTERS ? stored : farthest_of(stored); }

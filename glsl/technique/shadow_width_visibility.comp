@@ -5,11 +5,14 @@
 #include "pass.glsl"
 #include "filtered.glsl"
 #include "shadow_width.glsl"
+#include "bottom_map.glsl"
 
 layout(constant_id = 43) const float SCALE = 1.0;        // of c_scale, see below
 layout(constant_id = 44) const float SHADOW_BIAS = 0.0;  // c_bias
+layout(constant_id = 64) const bool BACK_FACES = false;  // occluders are as far away as their farthest back faces
 
 readonly BUFFER(shadow_widths);
+TEXTURE(bottom_map);
 
 // The width at `t`, bilinear between texels.
 float width_at(View view, vec2 t) {
@@ -22,14 +25,20 @@ float width_at(View view, vec2 t) {
                mix(shadow_widths[next].x, shadow_widths[next + 1u].x, share.x), share.y);
 }
 
+// How deep the occluder is that hides a pixel behind the texel nearest to `t`, whose nearest depth is `depth`.
+float occluder_depth(vec2 t, float depth) {
+    float bottom = BACK_FACES && depth > 0.0 ? farthest_of(texelFetch(bottom_map, ivec2(floor(t + 0.5)), 0).x) : 0.0;
+    return bottom > 0.0 ? bottom : depth;
+}
+
 // 1 − I(sd, sw) of the paper's section 3.
 // DEVIATION [Kirsch03 §3]: c_scale is no constant of the scene. With the occluder's distance from the light over the light's
 // half size for it, the inner penumbra is as wide as that of an edge at the occluder's depth, and ends with the light's size.
 float hidden_share(View view, Fit fit, uvec2 pixel, Receiver receiver) {
     float depth = nearest_depth(view, receiver.t);
-    float difference = max(depth - receiver.d, 1e-30);
+    float difference = max(occluder_depth(receiver.t, depth) - receiver.d, 1e-30);
     float light = clamp(1.0 + SHADOW_BIAS - SCALE * width_at(view, receiver.t) / difference, 0.0, 1.0);
     return depth > receiver.biased ? 1.0 - light : 0.0;
 }
 
-uint samples_read_by_pixel() { return 5u; }
+uint samples_read_by_pixel() { return BACK_FACES ? 6u : 5u; }

@@ -4,8 +4,8 @@
 use super::pass::{Domain, Pass, Work};
 use super::resource::{Resource, Shape, Sizes};
 use crate::shared::{
-    Kernel, Lists, Packet, Progress, QUALITY_COARSER, QUALITY_FINER, Round, TILE_SIZE,
-    WINDOW_PIXELS_MIN, Window,
+    Kernel, Lists, Packet, Progress, QUALITY_COARSER, QUALITY_FINER, Round, TILE_SIZE, Tile,
+    TileBounds, WINDOW_PIXELS_MIN, Window,
 };
 
 /// Most windows of a tile.
@@ -13,8 +13,14 @@ const WINDOWS_PER_TILE: u64 = (TILE_SIZE * TILE_SIZE / WINDOW_PIXELS_MIN) as u64
 
 const CLEAR_LISTS: Pass = Pass::new("clear_lists", Work::Clear(&["lists", "rounds"]));
 
-/// The kernels of all pixels [GBP06, SS07; Yang09 eq. 1].
-pub const KERNELS: Pass = Pass::dispatch("kernels", "kernels.comp", Domain::Pixels);
+/// Bounds of what is visible in each tile.
+const TILE_BOUNDS: Pass = Pass::dispatch("tile_bounds", "tile_bounds.comp", Domain::Image);
+
+/// The tiles that a view has to look at.
+pub const TILES: Pass = Pass::dispatch("tiles", "tiles.comp", Domain::Tiles);
+
+/// The kernels of their pixels [GBP06, SS07; Yang09 eq. 1].
+pub const KERNELS: Pass = Pass::dispatch("kernels", "kernels.comp", Domain::ListedTiles);
 
 /// Each pixel's budget, where these differ [Schwarz08 §4.2].
 const BUDGETS: Pass = Pass::dispatch("budgets", "budgets.comp", Domain::Image);
@@ -39,11 +45,19 @@ pub const CLASSIFY: Pass = Pass::dispatch("classify", "classify.comp", Domain::P
 
 /// Once a frame, before the first view.
 pub fn first_passes(has_lists: bool, budgets_vary: bool) -> impl Iterator<Item = Pass> {
-    let clear = has_lists.then_some(CLEAR_LISTS);
-    clear.into_iter().chain(budgets_vary.then_some(BUDGETS))
+    let first: &[Pass] = match has_lists {
+        true => &[CLEAR_LISTS, TILE_BOUNDS],
+        false => &[],
+    };
+    let budgets = budgets_vary.then_some(BUDGETS);
+    first.iter().copied().chain(budgets)
 }
 
 pub const RESOURCES: &[Resource] = &[
+    Resource::new("tile_bounds", |s| {
+        Shape::array::<TileBounds>(s.tiles()).when(s.kernels)
+    }),
+    Resource::new("tiles", |s| Shape::array::<Tile>(s.tiles()).when(s.kernels)),
     Resource::new("kernels", |s| {
         Shape::array::<Kernel>(s.pixels()).when(s.kernels)
     }),

@@ -7,7 +7,7 @@ use crate::gpu::ImageKind;
 use crate::shared::{self, Fit, SECTOR_STEPS, View};
 
 /// [texel] Frame of the shadow map that stays empty, so that contours close inside the map.
-pub const MARGIN: u32 = 1;
+const MARGIN: u32 = 1;
 
 const CLEAR_FITS: Pass = Pass::new("clear_fits", Work::Clear(&["fits"])).lasting();
 
@@ -58,6 +58,19 @@ const PEEL: Pass = drawn(
     },
 )
 .with(&[("PEEL", 1)]);
+
+/// The farthest back faces of what casts, for techniques that ask how thick it is.
+pub const BOTTOM_MAP: Pass = Pass::depths(
+    "bottom_map",
+    ("shadow_map.vert", Some("shadow_map.frag")),
+    Drawn::Casters {
+        masked: "shadow_map.frag",
+    },
+    "bottom_map",
+    MARGIN,
+)
+.with(&[("BOTTOMS", 1)])
+.lasting();
 
 const KEEP_LAYER: Pass = Pass::new(
     "keep_layer",
@@ -148,6 +161,16 @@ pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
         passes.push((KEEP_LAYER, layer));
     }
     passes
+}
+
+/// What `BOTTOM_MAP` draws into; or nothing, where shaders name it and do without.
+pub const fn bottom_map(needed: bool) -> Resource {
+    match needed {
+        true => Resource::new("bottom_map", |s| {
+            Shape::image(ImageKind::Depth, (s.map, s.map))
+        }),
+        false => Resource::new("bottom_map", |_| Shape::image(ImageKind::Depth, (0, 0))),
+    }
 }
 
 /// [texel] Of all coarser levels: their sides halve, from half of the next power of two on.

@@ -57,6 +57,10 @@ pub enum Domain {
     Instances,
     /// All pixels, if the view has casters or nothing is accumulated.
     Pixels,
+    /// All tiles of the image.
+    Tiles,
+    /// All pixels of the tiles that the view has to look at.
+    ListedTiles,
     /// Every packet of the image, if the view has casters.
     Packets,
     /// The view's list of coherent packets, in rounds.

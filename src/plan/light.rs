@@ -49,9 +49,10 @@ impl LightPlan {
         self.sets.iter().flat_map(|set| &set.views)
     }
 
-    /// Whether several views add up.
+    /// Whether views add to what is cleared before the first of them: several, or one that looks only where there is
+    /// something to add.
     pub fn accumulates(&self) -> bool {
-        self.views().count() > 1
+        self.views().count() > 1 || self.sets.iter().any(|set| set.recipe.kernels)
     }
 }
 

@@ -68,7 +68,7 @@ impl Plan {
             }
             Lighting::Shadowed => {}
         }
-        let one_view = planned.views().count() == 1;
+        let accumulates = planned.accumulates();
         let one_face = planned.views().all(|view| view.view.face == 0);
         let (parts, near) = (planned.part_count as u32, planned.near_count as u32);
         let reach =
@@ -86,7 +86,7 @@ impl Plan {
                 "the light has no extent: its shadow is hard",
             );
         }
-        if one_view {
+        if !accumulates {
             self.omit(format!("{name}: accumulation"), "it has a single view");
         }
         if one_face {

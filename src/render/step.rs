@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Domain, Drawn, Extent, Lent, Scope, Step, Target, Work};
 use crate::gpu::{self, Attachments, Commands, Draw, Groups, MAX_COLORS, Resources};
 use crate::plan::Plan;
-use crate::shared::{Fit, GROUP_SIZE, Instance, Push, Round, TILE_SIZE};
+use crate::shared::{Fit, GROUP_SIZE, GROUPS_PER_ROW, Instance, Lists, Push, Round, TILE_SIZE};
 
 /// What a host brings along for one frame; nothing where the library draws by itself.
 #[derive(Default)]
@@ -131,6 +131,16 @@ impl Recording<'_> {
             Domain::PixelReduction => reduction(plan.size.0 * plan.size.1),
             Domain::TriangleReduction => reduction(triangles),
             Domain::Pixels => return found(offset_of!(Fit, kernel_groups)),
+            Domain::Tiles => {
+                let count: u32 = tiles(plan.size).iter().product();
+                listed(count.div_ceil(GROUP_SIZE))
+            }
+            Domain::ListedTiles => {
+                let lists = self.resources.buffer("lists")?;
+                let view = push.index as usize * size_of::<Lists>();
+                let offset = view + offset_of!(Lists, tile_groups);
+                Groups::Indirect(lists, offset as u64)
+            }
             Domain::Packets => return found(offset_of!(Fit, classify_groups)),
             Domain::HierarchyLevel => {
                 let level = push.level as usize * size_of::<[u32; 3]>();
@@ -296,6 +306,15 @@ fn reduction(count: u32) -> Groups<'static> {
     const GROUPS_MAX: u32 = 4096;
     let groups = count.div_ceil(GROUP_SIZE * ITEMS_PER_INVOCATION);
     Groups::Direct([groups.clamp(1, GROUPS_MAX), 1, 1])
+}
+
+/// So many work groups, as lists are worked off.
+fn listed(groups: u32) -> Groups<'static> {
+    Groups::Direct([
+        groups.min(GROUPS_PER_ROW),
+        groups.div_ceil(GROUPS_PER_ROW),
+        1,
+    ])
 }
 
 /// Work groups over an image of this size.

@@ -13,7 +13,7 @@
 //! patch has another below it where the farthest back face is, and what either hides counts once.
 
 use super::{Accumulate, Method, Recipe, Settings, with};
-use crate::frame::map::MARGIN;
+use crate::frame::map::{BOTTOM_MAP, bottom_map};
 use crate::frame::{Domain, Drawn, Extent, Pass, Resource, Shape, Target, Work};
 use crate::gpu::{Blend, ImageKind};
 
@@ -35,19 +35,6 @@ const RECEIVER_PYRAMID: Pass = Pass::dispatch(
     "receiver_pyramid.comp",
     Domain::PyramidLevel,
 )
-.lasting();
-
-/// The farthest back faces of what casts.
-const BOTTOM_MAP: Pass = Pass::depths(
-    "bottom_map",
-    ("shadow_map.vert", Some("shadow_map.frag")),
-    Drawn::Casters {
-        masked: "shadow_map.frag",
-    },
-    "bottom_map",
-    MARGIN,
-)
-.with(&[("BOTTOMS", 1)])
 .lasting();
 
 /// Where the patches of a map, 0 or that of bottoms, 1, can take light.
@@ -78,9 +65,6 @@ const fn scatter(colors: &'static [&'static str]) -> Pass {
 }
 
 const RECEIVERS: Resource = Resource::new("receiver_map", |s| {
-    Shape::image(ImageKind::Depth, (s.map, s.map))
-});
-const BOTTOMS: Resource = Resource::new("bottom_map", |s| {
     Shape::image(ImageKind::Depth, (s.map, s.map))
 });
 const PYRAMID: Resource = Resource::new("receiver_pyramid", |s| {
@@ -126,10 +110,7 @@ impl Method for OccluderDriven {
         recipe.passes.splice(0..0, passes);
         recipe.resources = vec![
             RECEIVERS,
-            match bottoms {
-                true => BOTTOMS,
-                false => absent("bottom_map"),
-            },
+            bottom_map(bottoms),
             PYRAMID,
             OF_PATCHES,
             sums("soft_shadows", settings.accumulate),

@@ -7,7 +7,7 @@
 //! occluders of themselves.
 
 use super::{
-    CLASSIFY, CONTOUR_BIAS, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings,
+    CLASSIFY, CONTOUR_BIAS, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings, TILES,
     TURNS_OF_WALKS, budget_knobs, once, with,
 };
 use crate::frame::{Domain, Pass};
@@ -35,9 +35,13 @@ impl Method for PacketContour {
     fn recipe(&self, settings: &Settings) -> Recipe {
         let mapping = mapping(settings);
         let passes = match mapping {
-            None => once([KERNELS, CLASSIFY, PIXELS]),
-            Some(Mapping::Serial | Mapping::Lanes) => once([KERNELS, CLASSIFY, PACKETS, PIXELS]),
-            Some(Mapping::Cooperative) => once([KERNELS, COOPERATIVE, PIXELS.of_leftovers()]),
+            None => once([TILES, KERNELS, CLASSIFY, PIXELS]),
+            Some(Mapping::Serial | Mapping::Lanes) => {
+                once([TILES, KERNELS, CLASSIFY, PACKETS, PIXELS])
+            }
+            Some(Mapping::Cooperative) => {
+                once([TILES, KERNELS, COOPERATIVE, PIXELS.of_leftovers()])
+            }
         };
         Recipe {
             kernels: true,

@@ -6,7 +6,7 @@
 //! hierarchical over the hierarchy.
 
 use super::{
-    CLASSIFY, CONTOUR_BIAS, KERNELS, Method, PIXELS, Recipe, Settings, TURNS_OF_WALKS,
+    CLASSIFY, CONTOUR_BIAS, KERNELS, Method, PIXELS, Recipe, Settings, TILES, TURNS_OF_WALKS,
     budget_knobs, once, with,
 };
 
@@ -16,7 +16,7 @@ impl Method for PixelContour {
     fn recipe(&self, settings: &Settings) -> Recipe {
         let mut recipe = Recipe::over_pixels("contour_visibility", "contour_visibility.comp");
         if settings.hierarchical {
-            recipe.passes = once([KERNELS, CLASSIFY, PIXELS]);
+            recipe.passes = once([TILES, KERNELS, CLASSIFY, PIXELS]);
             recipe.turns = TURNS_OF_WALKS;
         }
         recipe.within_budget(settings)

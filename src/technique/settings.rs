@@ -1,114 +1,13 @@
-//! The settings of a technique: the table of all knobs, and what they come to.
+//! The settings of a technique: the table of all knobs.
 
-use super::choice::choice;
-use super::knob::{self, Access, Field, Row};
-use super::{Recipe, Technique};
-use crate::Result;
-use crate::frame::Density;
-use crate::scene::AreaLight;
-use crate::shared::LEAST_BUDGET;
-
-choice! {
-    /// What a leaf does whose status differs between the packet's pixels.
-    enum Leaf, "leaf mode" {
-        /// A packet whose pixels disagree is worked off pixel by pixel [Yang09 §4.1].
-        Reprocess = "reprocess",
-        /// The pixels of a packet compare for themselves; all else is shared.
-        PerPixel = "per-pixel",
-    }
-}
-
-choice! {
-    /// How a packet's pixels map to shader invocations.
-    enum Mapping, "mapping" {
-        /// A packet is one invocation, which loops over its pixels [Yang09 alg. 2].
-        Serial = "serial",
-        /// A packet is one invocation for each pixel; all walk the same stack.
-        Lanes = "lanes",
-        /// A subgroup walks for those of its pixels that are alike: its lanes look at different nodes, then each at its pixel.
-        Cooperative = "cooperative",
-    }
-}
-
-choice! {
-    /// How densely the nodes of the hierarchy over a shadow map stand.
-    enum Hierarchy, "hierarchy" {
-        /// Side by side [DU07]; a third of a node a texel.
-        Hsm = "hsm",
-        /// Side by side over the finest levels, at every texel of a coarse map above them [Schwarz08 §6].
-        Ysm = "ysm",
-        /// At every texel, in every level [SS07; Yang09 §4.2].
-        Mssm = "mssm",
-        /// At every texel of the first level, half a node's side apart above it.
-        Graded = "graded",
-    }
-}
-
-impl Hierarchy {
-    /// [texel] Side of the coarse map of a YSM [Schwarz08 §6].
-    const YSM_SIDE: u32 = 256;
-    /// [level] Of a graded hierarchy, the last whose nodes stand at every texel.
-    const GRADED: u32 = 1;
-
-    /// Over a map of `map` × `map` texels.
-    pub fn density(self, map: u32) -> Density {
-        match self {
-            Self::Hsm => Density::HSM,
-            Self::Ysm => Density::ysm((map / Self::YSM_SIDE).max(1).ilog2()),
-            Self::Mssm => Density::MSSM,
-            Self::Graded => Density::graded(Self::GRADED),
-        }
-    }
-}
-
-choice! {
-    /// Where the samples of a bitmask stand in the light's strata.
-    enum Pattern, "sample pattern" {
-        /// The light's samples stand in the middles of their strata.
-        Regular = "regular",
-        /// They stand anywhere in them, the same for all pixels.
-        Jittered = "jittered",
-    }
-}
-
-choice! {
-    /// What texels stand for.
-    enum Occluders, "kind of occluder" {
-        /// The texels of a peeled layer are rectangles.
-        Micropatches = "micropatches",
-        /// The texels of a peeled layer have contours.
-        Contours = "contours",
-        /// Four neighbouring samples span a quadrangle.
-        Microquads = "microquads",
-        /// As micropatches, but that texels of coarser levels are rectangles of whatever size fits [Schwarz08 §5.2].
-        Microrects = "microrects",
-    }
-}
+use super::Technique;
+use super::field::Field;
+use super::kinds::{Accumulate, Hierarchy, Leaf, Mapping, Neighbours, Occluders, Pattern};
+use super::knob::{self, Access};
+use super::row::Row;
 
 /// A knob of [`Settings`].
 pub type Knob = knob::Knob<Settings>;
-
-choice! {
-    /// From where the shadow-width map gets a texel's width.
-    enum Neighbours, "neighbourhood" {
-        /// From three neighbours, at distances that double.
-        Three = "3",
-        /// From six neighbours, at distances that double.
-        Six = "6",
-        /// From the nearest texel that nothing hides, found by jump flooding.
-        Flood = "flood",
-    }
-}
-
-choice! {
-    /// In which format the shares of micropatches add up.
-    enum Accumulate, "format of sums" {
-        /// In 32 bits.
-        Fp32 = "fp32",
-        /// In 16 bits, which lose small shares [Atty06 app. A].
-        Fp16 = "fp16",
-    }
-}
 
 /// Declares [`Settings`] and the table of knobs: a row each, of a field with its type and default, and what [`Row`] says.
 macro_rules! settings {
@@ -353,6 +252,15 @@ settings! {
         .finite("the bias of shadow widths is a finite number from 0")
         .sets("SHADOW_BIAS");
 
+    /// `ShadowWidth` only: occluders are as far from the light as their farthest back faces [Kirsch03 §5].
+    back_faces: bool = false,
+        Row::switch(
+            "back-faces",
+            "With shadow-width: take the depths of the farthest back faces, so that overlapping blockers make shadows harder \
+             instead of softer; for blockers that receive no shadows",
+        )
+        .sets("BACK_FACES");
+
     /// `OccluderDriven` only: of the soft shadow map.
     accumulate: Accumulate = Accumulate::Fp32,
         Row::value(
@@ -465,148 +373,4 @@ settings! {
     /// Count pixels, packets, nodes and edges (costs time).
     counters: bool = false,
         Row::switch("counters", "Count pixels, packets, nodes and edges (takes time)").sets("COUNT");
-}
-
-/// Knobs that every technique reads, whatever its lights.
-const COMMON: [&str; 2] = ["map", "bias"];
-
-/// [texel] A map of a point that is no larger is not made smaller.
-const POINT_MAP: u32 = 128;
-
-impl Settings {
-    /// The settings that a technique is known by: rivals have a single view, as in their publications.
-    pub fn usual(technique: Technique) -> Self {
-        let mut usual = Self {
-            technique,
-            ..Self::default()
-        };
-        technique.method().make_usual(&mut usual);
-        usual
-    }
-
-    /// The usual settings, but that every sub-light is integrated, as in the publications.
-    pub fn published(technique: Technique) -> Self {
-        Self {
-            near_points: 0,
-            ..Self::usual(technique)
-        }
-    }
-
-    /// As they run for a light: one without extent casts a hard shadow, whatever the technique.
-    pub fn of_light(&self, light: &AreaLight) -> Self {
-        let mut settings = self.clone();
-        if light.is_point() && self.technique != Technique::Hard {
-            settings.technique = Technique::Hard;
-            settings.percentage_closer = false;
-        }
-        settings
-    }
-
-    /// As they run for points of the light that stand for a part of it: hard shadows of which the mean counts. A quarter of
-    /// the texels of large maps is enough, since a point's error is one of many.
-    pub fn of_points(&self) -> Self {
-        Self {
-            technique: Technique::ReferenceMaps,
-            map: (self.map / 2).max(self.map.min(POINT_MAP)),
-            bias: None,
-            ..self.clone()
-        }
-    }
-
-    /// [texel] The bias that is asked for, or else the usual one, with which the technique errs least: what covers the
-    /// way from a receiver to the samples that it is compared with.
-    pub fn bias(&self) -> f32 {
-        let usual = || self.technique.method().bias(self);
-        self.bias.unwrap_or_else(usual)
-    }
-
-    /// Whether sub-lights that an occluder is near to give way to points.
-    pub fn has_near_points(&self) -> bool {
-        self.near_points > 0 && self.reads("near-points", false) == Some(true)
-    }
-
-    /// [level] Coarser than the map that a budget can take; None: there is no budget.
-    pub fn coarse_levels(&self) -> Option<u32> {
-        let whole = self.map.next_power_of_two().ilog2();
-        (self.budget).map(|_| whole.saturating_sub(LEAST_BUDGET.ilog2()))
-    }
-
-    /// Whether it is the light's points that cast shadows, hard ones.
-    pub fn samples_points(&self) -> bool {
-        self.technique.method().samples_points()
-    }
-
-    /// Whether these settings read a flag, given without its dashes. None: no technique does, it is no knob.
-    ///
-    /// `point`: for a light without extent, whose shadow is hard whatever the technique.
-    pub fn reads(&self, flag: &str, point: bool) -> Option<bool> {
-        KNOBS.iter().find(|knob| knob.row.flag == flag)?;
-        if COMMON.contains(&flag) {
-            return Some(true);
-        }
-        let mut own = self.technique.method().knobs(self);
-        if point {
-            // Sub-lights have no extent either, and another technique's knobs are not asked for.
-            own.retain(|knob| self.technique == Technique::Hard && *knob != "split");
-        }
-        let is_read = match flag {
-            "technique" => !point || self.technique == Technique::Hard,
-            "hierarchy" | "mssm-bits" => !point && Recipe::new(self).kernels,
-            "counters" | "multisample" => true,
-            "no-neighbour-visibility" => self.multisample > 1,
-            _ => own.contains(&flag),
-        };
-        Some(is_read)
-    }
-
-    /// As a size of packets: they form where they are [Yang09 §6], among the pixels that the lanes of a subgroup hold.
-    pub const LOCAL: (u32, u32) = knob::LOCAL;
-    /// [pixel] What local packets form in.
-    const WINDOW: (u32, u32) = (8, 8);
-
-    /// [pixel] Width and height of what is listed as a packet: the packet, or what local ones form in.
-    pub fn window(&self) -> (u32, u32) {
-        match self.packet {
-            Self::LOCAL => Self::WINDOW,
-            packet => packet,
-        }
-    }
-
-    /// How a packet maps to invocations: local ones have no choice.
-    pub fn packet_mapping(&self) -> Mapping {
-        match self.packet {
-            Self::LOCAL => Mapping::Cooperative,
-            _ => self.mapping,
-        }
-    }
-
-    /// The specialization constants that the technique's shaders take, by name.
-    pub fn constants(&self) -> Vec<(&'static str, u32)> {
-        let read = KNOBS
-            .iter()
-            .filter(|knob| self.reads(knob.row.flag, false) == Some(true));
-        let constant = |knob: &Knob| Some((knob.row.constant?, knob.number(self)));
-        let mut constants: Vec<_> = read.filter_map(constant).collect();
-        constants.extend(self.technique.method().constants(self));
-        constants
-    }
-
-    /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) when a setting is out of its range.
-    pub fn validate(&self) -> Result<()> {
-        KNOBS.iter().try_for_each(|knob| knob.check(self))?;
-        let known = self.technique.method().occluders();
-        match known.is_empty() || known.contains(&self.occluders) {
-            true => Ok(()),
-            false => {
-                let names: Vec<String> = known.iter().map(Occluders::to_string).collect();
-                Err(crate::Error::Invalid(format!(
-                    "the occluders of {} are {}, not {}",
-                    self.technique,
-                    names.join(" or "),
-                    self.occluders
-                )))
-            }
-        }
-    }
 }

@@ -6,11 +6,13 @@
 //! image. Wrong: only what the light's centre does not see is shaded, so shadows are too small by the outer half of their penumbra,
 //! and brighter than they are at their borders; where blockers overlap, softness jumps, since one depth is known at a texel, and
 //! widths of blockers that join add up to darker shadows; a blocker that receives shadows itself has hardly any penumbra on it, for
-//! it widens its own silhouette; widths end with the starting difference's reach. The shape of the light does not matter.
+//! it widens its own silhouette. Where blockers receive nothing, the depths of farthest back faces make shadows harder where
+//! softness would jump, which is seen less [Kirsch03 §5, fig. 6]. Widths end with the starting difference's reach. The shape of the light does not matter.
 //! DEVIATION [Kirsch03 §3]: distances are in half sizes of the light (`glsl/technique/shadow_width_visibility.comp`), so that
 //! its size counts; faces to the side take the front face's scale.
 
 use super::{Method, Neighbours, Recipe, Settings, with};
+use crate::frame::map::{BOTTOM_MAP, bottom_map};
 use crate::frame::{Domain, Pass, Resource, Shape};
 
 pub struct ShadowWidth;
@@ -45,13 +47,14 @@ impl Method for ShadowWidth {
         let mut recipe = Recipe::over_samples("width_visibility", "shadow_width_visibility.comp");
         let spread = (0..spreads(settings)).map(|level| (SPREAD, level));
         let before = [(SEED, 0)].into_iter().chain(spread);
-        recipe.passes.splice(0..0, before);
-        recipe.resources = vec![WIDTHS];
+        let bottoms = settings.back_faces.then_some((BOTTOM_MAP, 0));
+        recipe.passes.splice(0..0, before.chain(bottoms));
+        recipe.resources = vec![WIDTHS, bottom_map(settings.back_faces)];
         recipe
     }
 
     fn knobs(&self, settings: &Settings) -> Vec<&'static str> {
-        let mut knobs = vec!["split", "neighbours", "scale", "shadow-bias"];
+        let mut knobs = vec!["split", "neighbours", "scale", "shadow-bias", "back-faces"];
         if settings.neighbours != Neighbours::Flood {
             knobs.push("start");
         }

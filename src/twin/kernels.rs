@@ -35,7 +35,8 @@ fn packed(cell: [i32; 2]) -> u32 {
     cell[0] as u32 | (cell[1] as u32) << 16
 }
 
-/// The kernel of a receiver that the view has to look at, for contours; `budget`: what limits its quality.
+/// The kernel of a receiver that the view has to look at, for contours; `budget`: what limits its quality; `depth_max`: no occluder
+/// is nearer to the light, 1 at most.
 pub fn kernel_of(
     view: &View,
     oblique: bool,
@@ -43,13 +44,12 @@ pub fn kernel_of(
     map: &ShadowMap,
     hierarchy: &Hierarchy,
     budget: Option<&Budget>,
+    mut depth_max: f32,
 ) -> Kernel {
     let lit = Kernel {
         status: KERNEL_LIT,
         ..Kernel::default()
     };
-    // The projection's near plane is the nearest caster.
-    let mut depth_max = 1.0;
     let mut found = None;
     let finest = u32::from(hierarchy.is_sparse());
     let mut finer = 0;

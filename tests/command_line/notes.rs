@@ -90,7 +90,7 @@ fn flags_that_a_technique_does_not_read() {
             "--light-samples --pattern",
         ),
         (
-            "--technique micropatch --no-gap-filling --occluders contours",
+            "--technique micropatch-hierarchical --no-gap-filling --occluders contours",
             "--occluders",
         ),
         (

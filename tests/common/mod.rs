@@ -8,7 +8,7 @@ use glam::Vec3;
 use halfshade::gpu::{Gpu, Options};
 use halfshade::plan::{Outputs, ViewPlan};
 use halfshade::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, RenderOptions, Renderer};
-use halfshade::shared::{Counters, Fit, Kernel, Lists, Packet, Window};
+use halfshade::shared::{Counters, Fit, Kernel, Lists, Packet, Tile, Window};
 use halfshade::shot::{Overrides, Shot};
 
 /// [pixel] Width and height of every image.
@@ -87,6 +87,7 @@ pub struct Traces {
     pub map: Vec<f32>,
     /// The image that holds all levels, row by row.
     pub hierarchy: Vec<[f32; 2]>,
+    pub tiles: Vec<Tile>,
     pub kernels: Vec<Kernel>,
     /// Those of a grid of packets, or what local ones form in.
     pub packets: Vec<Packet>,
@@ -117,6 +118,7 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
             .read_image("shadow_map", texels)
             .expect("shadow_map"),
         hierarchy: bounds(renderer),
+        tiles: listed(renderer, "tiles", lists.tile_count),
         kernels: renderer.read_buffer("kernels", pixels).expect("kernels"),
         packets: if local {
             Vec::new()

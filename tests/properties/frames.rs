@@ -29,6 +29,18 @@ fn the_same_shot_has_the_same_bits() {
     }
 }
 
+/// Where pixels are counted, tiles are listed that have nothing to add.
+#[test]
+fn counting_changes_no_bit() {
+    for (name, split) in [("colonnade", 1), ("knot", 2), ("grid", 1)] {
+        let mut shot = load(name, 64, settings(128, split));
+        let uncounted = with_gpu(|gpu| visibility(gpu, &shot));
+        shot.settings.counters = true;
+        let counted = with_gpu(|gpu| visibility(gpu, &shot));
+        assert!(same_bits(&uncounted, &counted), "{name}");
+    }
+}
+
 #[test]
 fn a_retained_frame_has_the_same_bits_and_draws_no_map() {
     let shot = load("knot", 64, settings(128, 1));

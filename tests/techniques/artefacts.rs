@@ -259,23 +259,39 @@ fn a_single_light_sample_shades_the_inner_penumbra_alone() {
     assert!(between > 100, "{between} pixels of penumbra");
 }
 
-/// [Kirsch03 §5, fig. 5] One depth is known at a texel: where a far blocker comes before a near one, the shadow gets softer, so
-/// that more blockers let through more light.
+/// [Kirsch03 §5, figs. 5 and 6] One depth is known at a texel: where a far blocker comes before a near one, the shadow gets softer,
+/// so that more blockers let through more light. With the depths of the farthest back faces it gets harder instead.
 #[test]
 fn overlapping_blockers_soften_shadows() {
-    let settings = || Settings {
-        map: 256,
-        ..usual(Technique::ShadowWidth)
-    };
     let strip = rectangle([-0.1, 0.1], [-0.6, 0.6]);
-    let alone = floor_of(plate_at(0.5), settings());
-    let crossed = floor_of(plate_at(0.5).plate(3.0, &strip), settings());
-    let brighter = alone
-        .iter()
-        .zip(&crossed)
-        .map(|(alone, crossed)| crossed - alone);
-    let most = brighter.fold(0.0, f32::max);
-    assert!(most > 0.2, "brighter by {most}");
+    let most_brighter = |back_faces| {
+        let settings = || Settings {
+            map: 256,
+            back_faces,
+            ..usual(Technique::ShadowWidth)
+        };
+        let near = || slab(plate_at(0.5), 0.48, &rectangle([-0.8, 0.8], [-0.8, 0.8]));
+        let alone = floor_of(near(), settings());
+        let both = slab(near().plate(3.0, &strip), 2.98, &strip);
+        let crossed = floor_of(both, settings());
+        let brighter = alone
+            .iter()
+            .zip(&crossed)
+            .map(|(alone, crossed)| crossed - alone);
+        brighter.fold(0.0, f32::max)
+    };
+    let (nearest, farthest) = (most_brighter(false), most_brighter(true));
+    assert!(
+        nearest > 0.2 && farthest < 0.02,
+        "brighter by {nearest} and {farthest}"
+    );
+}
+
+/// With a side at `bottom` that shows its back to what is above.
+fn slab(triangles: Triangles, bottom: f64, corners: &[DVec2; 4]) -> Triangles {
+    let mut turned = *corners;
+    turned.reverse();
+    triangles.plate(bottom, &turned)
 }
 
 /// [Kirsch03 §5, fig. 7] In a coarse map widths begin with a texel: where blocker and receiver are close, that is most of the
