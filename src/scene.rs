@@ -3,6 +3,7 @@
 mod accessor;
 mod container;
 mod document;
+mod draco;
 mod emitters;
 mod extensions;
 pub(crate) mod file;
@@ -10,6 +11,7 @@ mod geometry;
 pub mod gltf;
 mod light;
 mod material;
+mod meshopt;
 mod notes;
 mod options;
 mod pose;

@@ -3,6 +3,8 @@
 
 mod support;
 
+#[path = "support/compressed.rs"]
+mod compressed;
 #[path = "support/heap.rs"]
 mod heap;
 #[path = "support/slow.rs"]
@@ -14,6 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use compressed::{Meshopt, draco};
 use halfshade::scene::gltf::Limits;
 use halfshade::shot::Overrides;
 use serde_json::{Value, json};
@@ -94,6 +97,17 @@ fn check(
     );
 }
 
+/// The newer stream, with positions that are filtered.
+fn filtered() -> Gltf {
+    let kind = Meshopt {
+        extension: "KHR_meshopt_compression",
+        versions: [1, 0],
+        indices: "INDICES",
+        exponential: Some(12),
+    };
+    kind.compress()
+}
+
 fn texels() -> Vec<[u8; 4]> {
     (0..64).map(|i| [i * 4, 255 - i, i, 255]).collect()
 }
@@ -115,6 +129,10 @@ fn mutants_of_gltf() {
         ),
         ("a light and a camera", lit_triangle()),
         ("skins, targets and instances", posed_triangles()),
+        ("meshopt", Meshopt::USUAL.compress()),
+        ("filtered meshopt", filtered()),
+        ("Draco", draco(7)),
+        ("Draco in sequence", draco(0)),
     ];
     let path = Path::new("folder/mutant");
     for (index, (name, seed)) in seeds.iter().enumerate() {

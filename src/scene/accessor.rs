@@ -6,6 +6,7 @@ use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Accessor as AccessorJson, Index};
 
 use super::document::{Document, label};
+use super::draco;
 use crate::Result;
 
 /// A typed view of bytes. Elements before `count` can be read without further checks.
@@ -108,6 +109,55 @@ impl<'a> Accessor<'a> {
             normalized: json.normalized,
             count,
         })
+    }
+
+    /// Opens an attribute that was compressed, as [`Self::open`] and [`Self::open_integers`] do with those that were not.
+    ///
+    /// # Errors
+    /// When it is of another type.
+    pub fn decoded(
+        document: &'a Document,
+        index: Index<AccessorJson>,
+        attribute: &'a draco::Attribute,
+        shape: Type,
+        components: &[ComponentType],
+        user: &str,
+    ) -> Result<Self> {
+        let json = document.get(index, "accessor", user)?;
+        let fits = |component: &ComponentType| {
+            components.contains(component) && attribute.components == shape.multiplicity()
+        };
+        let component = attribute.component.filter(fits).ok_or_else(|| {
+            document.error(format!(
+                "{user} is of a type in its Draco stream that it must not have"
+            ))
+        })?;
+        let stride = component.size() * attribute.components;
+        Ok(Self {
+            dense: Some(Strided {
+                bytes: &attribute.bytes,
+                stride,
+            }),
+            sparse: None,
+            component,
+            normalized: json.normalized,
+            count: attribute.bytes.len() / stride,
+        })
+    }
+
+    /// Opens the indices of a mesh that was compressed.
+    pub fn decoded_indices(mesh: &'a draco::Mesh) -> Self {
+        const STRIDE: usize = size_of::<u32>();
+        Self {
+            dense: Some(Strided {
+                bytes: &mesh.indices,
+                stride: STRIDE,
+            }),
+            sparse: None,
+            component: ComponentType::U32,
+            normalized: false,
+            count: mesh.indices.len() / STRIDE,
+        }
     }
 
     /// The components of an element; normalized integers are scaled to [0, 1] or [-1, 1].

@@ -16,8 +16,9 @@ use gltf::json::root::Get;
 use gltf::json::{Buffer, Index, Root, buffer};
 
 use super::container::{Bytes, check_version, split};
+use super::meshopt::Compressed;
 use super::options::{Budget, LoadOptions};
-use super::{extensions, file};
+use super::{draco, extensions, file};
 use crate::{Error, Result};
 
 /// Files in the wild omit the padding.
@@ -44,6 +45,9 @@ pub(super) struct Document<'a> {
     pub transforms: Vec<DAffine3>,
     binary: Option<Bytes<'a>>,
     buffers: Vec<OnceCell<Bytes<'a>>>,
+    /// One per buffer view: what compressed ones hold, as bytes or as meshes.
+    decoded: Vec<OnceCell<Vec<u8>>>,
+    meshes: Vec<OnceCell<draco::Mesh>>,
     outside_paths: bool,
     budget: RefCell<Budget>,
     /// The files beside it that were read.
@@ -67,8 +71,7 @@ impl<'a> Document<'a> {
             return Err(Error::parse(
                 path,
                 format!(
-                    "requires the extension {name:?}, which is not supported; {}",
-                    extensions::advice(name)
+                    "requires the extension {name:?}, which is not supported; export it without"
                 ),
             ));
         }
@@ -81,6 +84,12 @@ impl<'a> Document<'a> {
             read: RefCell::default(),
             transforms: exact.nodes.iter().map(exact::Node::transform).collect(),
             buffers: vec![OnceCell::new(); root.buffers.len()],
+            decoded: (root.buffer_views.iter())
+                .map(|_| OnceCell::new())
+                .collect(),
+            meshes: (root.buffer_views.iter())
+                .map(|_| OnceCell::new())
+                .collect(),
             root,
             binary,
         })
@@ -138,20 +147,71 @@ impl<'a> Document<'a> {
     pub fn view(&self, index: Index<buffer::View>, user: &str) -> Result<(&[u8], Option<usize>)> {
         let view = self.get(index, "buffer view", user)?;
         let name = label("buffer view", index.value(), view.name.as_deref());
-        let bytes = self.buffer(view.buffer, &name)?;
-        let start = view.byte_offset.unwrap_or_default().0;
+        let stride = view.byte_stride.map(|stride| stride.0);
+        match Compressed::of(view) {
+            None => {
+                let start = view.byte_offset.unwrap_or_default().0;
+                let slice = self.slice(view.buffer, start, view.byte_length.0, &name)?;
+                Ok((slice, stride))
+            }
+            Some(compressed) => {
+                let compressed = compressed
+                    .map_err(|e| self.error(format!("{name}: its meshopt compression: {e}")))?;
+                let own = compressed.is_strided().then_some(compressed.byte_stride);
+                let bytes = self.decoded(index.value(), &compressed, &name)?;
+                Ok((bytes, stride.or(own)))
+            }
+        }
+    }
+
+    /// A range [byte] of a buffer.
+    fn slice(&self, buffer: Index<Buffer>, start: u64, length: u64, user: &str) -> Result<&[u8]> {
+        let bytes = self.buffer(buffer, user)?;
         let slice = start
-            .checked_add(view.byte_length.0)
+            .checked_add(length)
             .and_then(|end| bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
-        let slice = slice.ok_or_else(|| {
+        slice.ok_or_else(|| {
             self.error(format!(
-                "{name}: {} bytes from byte {start} do not fit into the {} bytes of buffer {}",
-                view.byte_length.0,
+                "{user}: {length} bytes from byte {start} do not fit into the {} bytes of buffer {}",
                 bytes.len(),
-                view.buffer.value(),
+                buffer.value(),
+            ))
+        })
+    }
+
+    /// The bytes of a buffer view that meshoptimizer has compressed.
+    fn decoded(&self, index: usize, compressed: &Compressed, name: &str) -> Result<&[u8]> {
+        let cell = &self.decoded[index];
+        if let Some(bytes) = cell.get() {
+            return Ok(bytes);
+        }
+        let buffer = Index::new(u32::try_from(compressed.buffer).unwrap_or(u32::MAX));
+        let (start, length) = (compressed.byte_offset, compressed.byte_length);
+        let stream = self.slice(buffer, start, length, name)?;
+        self.spend(compressed.size().unwrap_or(u64::MAX), name)?;
+        let bytes = compressed.decode(stream).map_err(|e| {
+            self.error(format!(
+                "{name}: its meshopt compression cannot be undone: {e}"
             ))
         })?;
-        Ok((slice, view.byte_stride.map(|stride| stride.0)))
+        Ok(cell.get_or_init(|| bytes))
+    }
+
+    /// The mesh that Draco has compressed into a buffer view, to which `user` refers.
+    pub fn draco(&self, view: u32, user: &str) -> Result<&draco::Mesh> {
+        let (stream, _) = self.view(Index::new(view), user)?;
+        let cell = &self.meshes[view as usize];
+        if let Some(mesh) = cell.get() {
+            return Ok(mesh);
+        }
+        let most = self.budget.borrow().left();
+        let mesh = draco::Mesh::decode(stream, most).map_err(|e| {
+            self.error(format!(
+                "{user}: its Draco compression cannot be undone: {e}"
+            ))
+        })?;
+        self.spend(mesh.size(), user)?;
+        Ok(cell.get_or_init(|| mesh))
     }
 
     fn buffer(&self, index: Index<Buffer>, user: &str) -> Result<&[u8]> {

@@ -1,12 +1,15 @@
 //! Extensions of glTF by what they mean to shadows.
 
 /// The extensions whose meaning the loader knows.
-const KNOWN: [&str; 7] = [
+const KNOWN: [&str; 10] = [
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
     "KHR_texture_transform",
 ];
@@ -45,17 +48,4 @@ pub(super) fn may_be_required(name: &str) -> bool {
     is_known(name)
         || TEXTURES.contains(&name)
         || HARMLESS.iter().any(|&start| name.starts_with(start))
-}
-
-/// What helps against an extension that is not supported.
-pub(super) fn advice(name: &str) -> &'static str {
-    match name {
-        "KHR_draco_mesh_compression" => {
-            "decompress it first, as `gltf-transform cp IN OUT` does, or export it without"
-        }
-        "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "decompress it first, as `gltf-transform cp IN OUT` does, or export it without"
-        }
-        _ => "export it without",
-    }
 }

@@ -75,6 +75,11 @@ impl Budget {
         self.left = self.left.saturating_add(earned);
     }
 
+    /// [byte] What there is room for.
+    pub fn left(&self) -> u64 {
+        self.left
+    }
+
     /// Whether there is room for this many bytes, which are taken then.
     pub fn spend(&mut self, bytes: u64) -> bool {
         let rest = self.left.checked_sub(bytes);

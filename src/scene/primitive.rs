@@ -4,9 +4,11 @@ use glam::{DAffine3, DVec3, Vec2};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
+use gltf::json::{self, Index};
 
 use super::accessor::Accessor;
 use super::document::Document;
+use super::draco::Compressed;
 use super::material::TextureUse;
 use super::notes::Notes;
 use super::pose::Pose;
@@ -47,6 +49,81 @@ pub(super) struct Source<'a> {
     texcoords: Option<(Accessor<'a>, TextureUse)>,
 }
 
+/// How an accessor is opened that is not compressed.
+type Open<'a, 'd> = fn(
+    &'a Document<'d>,
+    Index<json::Accessor>,
+    Type,
+    &[ComponentType],
+    &str,
+) -> Result<Accessor<'a>>;
+
+/// The attributes and indices of a primitive, compressed or not.
+struct Attributes<'a, 'd, 'b> {
+    document: &'a Document<'d>,
+    primitive: &'b Primitive,
+    compressed: Option<&'b Compressed<'a>>,
+    name: &'b str,
+}
+
+impl<'a, 'd> Attributes<'a, 'd, '_> {
+    /// Numbers; integers among them must be normalized, but in files that use KHR_mesh_quantization. None: there are none.
+    fn numbers(
+        &self,
+        semantic: Semantic,
+        shape: Type,
+        components: &[ComponentType],
+    ) -> Result<Option<Accessor<'a>>> {
+        self.open(semantic, shape, components, Accessor::open)
+    }
+
+    /// Integers that stand for themselves. None: there are none.
+    fn integers(
+        &self,
+        semantic: Semantic,
+        shape: Type,
+        components: &[ComponentType],
+    ) -> Result<Option<Accessor<'a>>> {
+        self.open(semantic, shape, components, Accessor::open_integers)
+    }
+
+    fn open(
+        &self,
+        semantic: Semantic,
+        shape: Type,
+        components: &[ComponentType],
+        open: Open<'a, 'd>,
+    ) -> Result<Option<Accessor<'a>>> {
+        let user = format!("{} of {}", semantic.to_string(), self.name);
+        let declared = &self.primitive.attributes;
+        let Some(&index) = declared.get(&Checked::Valid(semantic.clone())) else {
+            return Ok(None);
+        };
+        let decoded = match self.compressed {
+            Some(compressed) => compressed.attribute(self.document, &semantic, self.name)?,
+            None => None,
+        };
+        match decoded {
+            Some(attribute) => {
+                Accessor::decoded(self.document, index, attribute, shape, components, &user)
+            }
+            None => open(self.document, index, shape, components, &user),
+        }
+        .map(Some)
+    }
+
+    fn indices(&self) -> Result<Option<Accessor<'a>>> {
+        if let Some(compressed) = self.compressed {
+            return Ok(Some(Accessor::decoded_indices(compressed.mesh)));
+        }
+        let open = |index| {
+            let user = format!("the indices of {}", self.name);
+            Accessor::open_integers(self.document, index, Type::Scalar, &INTEGERS, &user)
+        };
+        self.primitive.indices.map(open).transpose()
+    }
+}
+
 impl<'a> Source<'a> {
     /// None: the primitive holds no triangles, as noted.
     pub fn open(
@@ -66,55 +143,43 @@ impl<'a> Source<'a> {
             }
             Checked::Invalid => return Err(document.error(format!("{name}: has an invalid mode"))),
         };
-        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
-        let open = |index, shape, components: &[_], what: &str| {
-            Accessor::open(
-                document,
-                index,
-                shape,
-                components,
-                &format!("{what} of {name}"),
-            )
+        let compressed = Compressed::of(document, primitive, name)?;
+        let attributes = Attributes {
+            document,
+            primitive,
+            compressed: compressed.as_ref(),
+            name,
         };
-        let integers_of = |index, shape, components: &[_], what: &str| {
-            let what = format!("{what} of {name}");
-            Accessor::open_integers(document, index, shape, components, &what)
-        };
-        let Some(positions) = attribute(Semantic::Positions) else {
+        let numbers = &NUMBERS[if document.is_quantized() { 0 } else { 4 }..];
+        let Some(positions) = attributes.numbers(Semantic::Positions, Type::Vec3, numbers)? else {
             notes.add("a primitive without POSITION is left out", name);
             return Ok(None);
         };
-        let numbers = &NUMBERS[if document.is_quantized() { 0 } else { 4 }..];
-        let positions = open(positions, Type::Vec3, numbers, "POSITION")?;
         let mut targets = Vec::new();
         let declared = primitive.targets.iter().flatten();
         for (target, &weight) in declared.zip(&pose.weights) {
             if let Some(index) = target.positions.filter(|_| weight != 0.0) {
-                let moved = open(index, Type::Vec3, numbers, "a morph target")?;
+                let user = format!("a morph target of {name}");
+                let moved = Accessor::open(document, index, Type::Vec3, numbers, &user)?;
                 targets.push((weight, moved));
             }
         }
         let mut influences = Vec::new();
         let sets = 0..if pose.joints.is_empty() { 0 } else { MAX_SETS };
         for set in sets {
-            let pair = attribute(Semantic::Joints(set)).zip(attribute(Semantic::Weights(set)));
-            let Some((joints, weights)) = pair else {
+            let joints = attributes.integers(Semantic::Joints(set), Type::Vec4, &INTEGERS[..2])?;
+            let weights = attributes.numbers(Semantic::Weights(set), Type::Vec4, &SHARES)?;
+            let Some(pair) = joints.zip(weights) else {
                 break;
             };
-            let joints = integers_of(joints, Type::Vec4, &INTEGERS[..2], "JOINTS")?;
-            influences.push((joints, open(weights, Type::Vec4, &SHARES, "WEIGHTS")?));
+            influences.push(pair);
         }
-        let indices = primitive
-            .indices
-            .map(|index| integers_of(index, Type::Scalar, &INTEGERS, "the indices"))
-            .transpose()?;
+        let indices = attributes.indices()?;
         let mut texcoords = None;
         if let Some(texture) = TextureUse::of(document, primitive.material, name)? {
-            match attribute(Semantic::TexCoords(texture.set)) {
-                Some(index) => {
-                    let accessor = open(index, Type::Vec2, &NUMBERS, "TEXCOORD")?;
-                    texcoords = Some((accessor, texture));
-                }
+            let semantic = Semantic::TexCoords(texture.set);
+            match attributes.numbers(semantic, Type::Vec2, &NUMBERS)? {
+                Some(accessor) => texcoords = Some((accessor, texture)),
                 None => notes.add(
                     "has no texture coordinates for its texture, whose first texel is taken",
                     name,
@@ -123,7 +188,11 @@ impl<'a> Source<'a> {
         }
         Ok(Some(Self {
             name,
-            mode,
+            // Draco's triangles are listed one by one.
+            mode: match compressed {
+                Some(_) => Mode::Triangles,
+                None => mode,
+            },
             positions,
             targets,
             influences,
