@@ -93,6 +93,7 @@ fn shot() -> Result<Shot> {
             },
             color: Vec3::ONE,
             intensity: None,
+            beam: None,
         }],
         settings: Settings::usual(Technique::PacketContour),
         budget_map: None,

@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // A light's visibility from what its views found occluded: 0 umbra … 1 lit; 0 where the surface faces
-// away from the whole light or lies behind it; NaN where there is no surface.
+// away from the whole light, lies behind it or out of its beam; NaN where there is no surface.
 #include "pass.glsl"
 #include "receiver.glsl"
 #include "share.glsl"
 #include "facing.glsl"
+#include "beam.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -38,7 +39,8 @@ void main() {
     if (point.exists) {
         result = 0.0;
         Facing facing = facing_of(light, point.position, point.normal);
-        if (facing.inside) result = 1.0;
+        if (beam_share(light, point.position - light.center) == 0.0) result = 0.0;
+        else if (facing.inside) result = 1.0;
         else if (faces_light(facing, point.normal))
             result = light.view_count == 0u ? 1.0 : 1.0 - share_of(occlusion[index], light.weight_sum);
     }

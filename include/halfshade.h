@@ -445,6 +445,9 @@ typedef struct hs_light {
     uint32_t shape;
     // 0
     uint32_t reserved;
+    // [degree] Inner and outer angle of the cone around `normal` that the shine of a disc or a sphere is kept in, 0 <= inner <= outer
+    // <= 180; 0 and 0: it is kept in none.
+    double cone_deg[2];
 } hs_light;
 
 // The knobs of a technique; hs_settings_default fills them all.

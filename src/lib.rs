@@ -47,6 +47,7 @@
 //!         shape: LightShape::Rect { u: DVec3::X, v: DVec3::Z }, // shines along u × v: down
 //!         color: Vec3::ONE,
 //!         intensity: None,
+//!         beam: None,
 //!     }],
 //!     settings: Settings { map: 256, ..Settings::usual(Technique::PacketContour) },
 //!     budget_map: None,

@@ -205,6 +205,9 @@ impl<'a> Tracer<'a> {
             facing,
             standard_error: 0.0,
         };
+        if !self.emitter.shines_to(receiver.point) {
+            return exact(0.0, 0.0);
+        }
         let Some(emitter) = self.emitter.seen_from(receiver.point) else {
             return exact(1.0, 1.0);
         };

@@ -24,7 +24,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
-pub use light::{Ball, Cone, SUN_ANGLE_DEG, Side, Spread, mapped};
+pub use light::{Ball, Beam, Cone, SUN_ANGLE_DEG, Side, Spread, mapped};
 pub(crate) use primitive::MAX_COORDINATE;
 pub use shape::Shape;
 pub use triangles::Triangles;
@@ -144,6 +144,8 @@ pub struct AreaLight {
     /// [radiance] Of a light without extent: radiant intensity; of a sun: irradiance of a surface that faces it. None: such that a white surface at the camera's target
     /// that faces the light has radiance 1.
     pub intensity: Option<f32>,
+    /// None: it shines as its shape does.
+    pub beam: Option<Beam>,
 }
 
 impl Scene {

@@ -185,6 +185,11 @@ shared! {
         /// [radiance · scene units²] Linear RGB radiance times area: the radiant intensity along `n`, which does not
         /// end where the area does.
         intensity: vec3,
+        /// Unit vector: the middle of the cone that its shine is kept in (`Beam`).
+        beam: vec3,
+        /// The cosine up to which all of it is there, and how fast its root ends there, per cosine; 0 = there is no cone.
+        beam_start: float,
+        beam_slope: float,
         /// [view] Its first view and how many it has.
         view_first: uint,
         view_count: uint,
@@ -240,6 +245,9 @@ shared! {
         sphere: vec4,
         /// The view's receivers are those in this cone; ALL_CONES: whatever cone they are in.
         cone: uint,
+        /// Unit vector, and the least cosine with it of ways to receivers; 0 and 0 = the light's shine is kept in no cone.
+        beam: vec3,
+        beam_cosine: float,
     }
 
     /// What the device finds out about a view: bounds, then the projection fitted to them, then the

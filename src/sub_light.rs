@@ -308,6 +308,7 @@ mod tests {
             },
             color: Vec3::ONE,
             intensity: None,
+            beam: None,
         }
     }
 

@@ -4,6 +4,7 @@
 //! on the same values, so `receiver`, `kernels` and `classify` mirror their shaders' `precise` expressions operation by
 //! operation. What is summed up, the visibility, is derived anew from the geometry in f64.
 
+pub mod beam;
 pub mod classify;
 pub mod contour;
 pub mod facing;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use halfshade::gpu::Gpu;
 use halfshade::reference::{ReferenceOptions, trace};
-use halfshade::scene::{AreaLight, LightShape, Scene};
+use halfshade::scene::{AreaLight, Beam, LightShape, Scene};
 use halfshade::shot::Shot;
 use halfshade::technique::{Settings, Technique};
 use support::{Triangles, camera, light, load, render, shot, visibility, with_gpu};
@@ -208,4 +208,104 @@ fn scenes_under_suns_and_spheres_are_as_rays_have_them() {
             assert!(error <= ERROR_MAX, "{name}, {:?}: {error}", shot.lights[0]);
         }
     });
+}
+
+/// A cone of light straight down from its centre.
+fn beam(inner_deg: f64, outer_deg: f64) -> Option<Beam> {
+    Some(Beam {
+        direction: DVec3::NEG_Y,
+        inner_deg,
+        outer_deg,
+    })
+}
+
+/// Within the cone shadows are what they are without, beyond it there is no light; rays say so as well. What only the dark sees has
+/// no views.
+#[test]
+fn a_cone_ends_the_light_and_changes_no_shadow() {
+    with_gpu(|gpu| {
+        let center = DVec3::new(0.3, 2.5, 0.0);
+        let disc = LightShape::Disc {
+            normal: DVec3::NEG_Y,
+            radius: 0.4,
+        };
+        for shape in [disc, LightShape::Sphere { radius: 0.4 }] {
+            let whole = seen_from_below(light(center, shape), settings(2, 128));
+            let mut kept = whole.clone();
+            kept.lights[0].beam = beam(5.0, 18.0);
+            let (all, found) = (render(gpu, &whole), render(gpu, &kept));
+            let rays = ReferenceOptions {
+                samples: 32,
+                seed: 0,
+            };
+            let truth = trace(&kept, 0, rays, &|_| {}, &Default::default()).expect("rays");
+            let mut counts = [0; 3];
+            for (i, &[x, y, z, surface]) in found.positions.iter().enumerate() {
+                let way = DVec3::new(x, y, z) - center;
+                let degrees = way.angle_between(DVec3::NEG_Y).to_degrees();
+                // Where rounding may decide.
+                if surface == 0.0 || (degrees - 18.0).abs() < 0.01 {
+                    continue;
+                }
+                let (seen, before) = (found.visibility[i], all.visibility[i]);
+                if degrees > 18.0 {
+                    counts[0] += 1;
+                    assert_eq!((seen, truth.visibility.data[i]), (0.0, 0.0), "{degrees}");
+                } else {
+                    counts[if before < 1.0 { 1 } else { 2 }] += 1;
+                    // Maps are fitted to fewer receivers, so contours move by parts of a texel.
+                    assert!((seen - before).abs() < 0.03, "{degrees}: {seen} {before}");
+                }
+            }
+            assert!(counts.iter().all(|&count| count > 40), "{counts:?}");
+        }
+        // To the side of the sphere's cone nothing is planned.
+        let views = |light| {
+            let shot = seen_from_below(light, settings(1, 64));
+            support::renderer(gpu, &shot).plan().views().count()
+        };
+        let sphere = sphere(center, 0.4);
+        let narrow = AreaLight {
+            beam: beam(5.0, 18.0),
+            ..sphere.clone()
+        };
+        let (all, some) = (views(sphere), views(narrow));
+        assert!(some < all && some > 0, "{some} of {all} views");
+    });
+}
+
+/// In the picture light ends between the angles.
+#[test]
+fn the_picture_of_a_cone_is_its_share() {
+    use halfshade::twin::irradiance::irradiance;
+
+    let center = DVec3::new(0.0, 2.0, 0.0);
+    let mut lamp = light(center, LightShape::Sphere { radius: 0.3 });
+    let of = |lamp: &AreaLight, x: f32| {
+        let shot = seen_from_below(lamp.clone(), settings(1, 64));
+        with_gpu(|gpu| {
+            let renderer = support::renderer(gpu, &shot);
+            let light = renderer.plan().lights[0].light;
+            let at = DVec3::new(x.into(), 0.0, 0.0) - shot.origin();
+            irradiance(&light, at.as_vec3(), glam::Vec3::Y)
+        })
+    };
+    let beam = beam(10.0, 30.0);
+    for (degrees, wanted) in [(5.0f64, 1.0), (20.0, f64::NAN), (31.0, 0.0)] {
+        let x = (2.0 * degrees.to_radians().tan()) as f32;
+        lamp.beam = None;
+        let all = of(&lamp, x);
+        lamp.beam = beam;
+        let share = f64::from(of(&lamp, x) / all);
+        let way = DVec3::new(x.into(), -2.0, 0.0);
+        let wanted = if wanted.is_nan() {
+            beam.expect("a cone").share(way)
+        } else {
+            wanted
+        };
+        assert!(
+            (share - wanted).abs() < 1e-4,
+            "{degrees}: {share} for {wanted}"
+        );
+    }
 }

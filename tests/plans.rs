@@ -79,6 +79,7 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
             },
             color: Vec3::ONE,
             intensity: None,
+            beam: None,
         }],
         settings: Settings::default(),
         budget_map: None,

@@ -321,7 +321,8 @@ fn area_lights() {
 fn punctual_lights_need_a_radius() {
     let mut gltf = Gltf::triangle();
     gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
-        {"type": "point", "intensity": 50.0}, {"type": "spot", "spot": {}}, {"type": "directional"},
+        {"type": "point", "intensity": 50.0}, {"type": "spot", "spot": {"innerConeAngle": 0.25}},
+        {"type": "directional"},
     ]);
     for light in 0..3 {
         let light = json!({"KHR_lights_punctual": {"light": light}});
@@ -343,19 +344,24 @@ fn punctual_lights_need_a_radius() {
     let scene = gltf.load_with(&options).unwrap();
     let shapes: Vec<_> = scene.lights.iter().map(|light| light.shape).collect();
     let radius = 0.25;
-    let disc = LightShape::Disc {
-        normal: DVec3::NEG_Z,
-        radius,
-    };
-    assert_eq!(shapes, [LightShape::Sphere { radius }, disc, sun(2.0)]);
+    let sphere = LightShape::Sphere { radius };
+    assert_eq!(shapes, [sphere, sphere, sun(2.0)]);
+    let beams: Vec<_> = scene.lights.iter().map(|light| light.beam).collect();
+    let beam = beams[1].expect("a spot light has a cone");
+    assert_eq!(
+        (beams[0], beam.direction, beams[2]),
+        (None, DVec3::NEG_Z, None)
+    );
+    let angles = [beam.inner_deg - 0.25f64.to_degrees(), beam.outer_deg - 45.0];
+    assert!(angles.iter().all(|off| off.abs() < 1e-5), "{beam:?}");
     assert_eq!(scene.lights[0].intensity, None);
     let options = LoadOptions {
         punctual_radius: Some(0.0),
         ..LoadOptions::default()
     };
     let lights = gltf.load_with(&options).unwrap().lights;
-    assert!(lights[0].is_point_without_direction());
-    assert!(lights[1].is_point() && !lights[1].is_point_without_direction());
+    assert!(lights[0].is_point_without_direction() && lights[1].is_point_without_direction());
+    assert!(lights[0].beam.is_none() && lights[1].beam.is_some());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod support;
 
 use glam::DVec3;
-use halfshade::scene::{AreaLight, LightShape};
+use halfshade::scene::{AreaLight, Beam, LightShape};
 use halfshade::shot::{Overrides, Shot};
 use halfshade::technique::{Leaf, Mapping, Settings, Technique};
 use serde_json::{Value, json};
@@ -110,6 +110,7 @@ fn light(shape: LightShape) -> AreaLight {
         shape,
         color,
         intensity: None,
+        beam: None,
     }
 }
 
@@ -276,6 +277,47 @@ fn suns_and_spheres() {
     assert!(refused(1, "center", json!(null)).contains("center"));
     json["lights"] = json!([{"type": "sun"}]);
     assert!(load(&json).unwrap_err().to_string().contains("direction"));
+}
+
+#[test]
+fn cones_of_light() {
+    let mut json = example();
+    json["lights"] = json!([
+        {"type": "disc", "center": [0, 3, 0], "normal": [0, -2, 0], "radius": 0.5, "cone_deg": [10, 30]},
+        {"type": "sphere", "center": [0, 3, 0], "radius": 0.5, "direction": [1, 0, 0], "cone_deg": [0, 90]},
+        {"type": "sphere", "center": [0, 3, 0], "radius": 0.5},
+    ]);
+    let lights = load(&json).unwrap().lights;
+    let beam = |direction, inner_deg, outer_deg| {
+        Some(Beam {
+            direction,
+            inner_deg,
+            outer_deg,
+        })
+    };
+    let beams: Vec<_> = lights.iter().map(|light| light.beam).collect();
+    let down = DVec3::new(0.0, -2.0, 0.0);
+    assert_eq!(
+        beams,
+        [beam(down, 10.0, 30.0), beam(DVec3::X, 0.0, 90.0), None]
+    );
+    let refused = |light: serde_json::Value| {
+        let mut json = json.clone();
+        json["lights"] = json!([light]);
+        load(&json).unwrap_err().to_string()
+    };
+    for angles in [
+        json!([30, 10]),
+        json!([0, 0]),
+        json!([-1, 10]),
+        json!([0, 181]),
+    ] {
+        let mut light = json["lights"][0].clone();
+        light["cone_deg"] = angles;
+        assert!(refused(light).contains("angles of its cone"));
+    }
+    let sun = json!({"type": "sun", "direction": [0, -1, 0], "cone_deg": [10, 30]});
+    assert!(refused(sun).contains("a cone is for discs and spheres"));
 }
 
 #[test]

@@ -109,6 +109,7 @@ impl Engine {
             },
             color: Vec3::ONE,
             intensity: None,
+            beam: None,
         };
         // SAFETY: the device outlives the effect and all that it makes.
         let gpu: Arc<Gpu> = unsafe { Gpu::adopt(self.lent()) }?;

@@ -19,6 +19,7 @@
 // distance and half sizes. Where one is below 1e-4, the rounding of positions and normals decides. Finite everywhere.
 
 #include "facing.glsl"
+#include "beam.glsl"
 
 // [scale] Shorter lengths are taken for it: the limit of a point is reached within a share of 1e-18.
 const float SHORTEST = 1e-9;
@@ -172,8 +173,8 @@ float irradiance_by_seen(SeenLight seen) {
     return max(sum, 0.0);
 }
 
-// [1 / scene units²] Irradiance at a point by a light whose radiance times area is 1.
-float irradiance(Light whole_light, vec3 position, vec3 normal) {
+// As `irradiance`, of a light that no cone keeps its shine in.
+float irradiance_everywhere(Light whole_light, vec3 position, vec3 normal) {
     Facing facing = facing_of(whole_light, position, normal);
     Light light = facing.light;
     vec3 way = facing.way;
@@ -190,4 +191,9 @@ float irradiance(Light whole_light, vec3 position, vec3 normal) {
     float area = (seen.disc ? PI : 4.0) * seen.half_size.x * seen.half_size.y;
     // Inside a sphere of constant radiance a hemisphere of it is seen; the cap of `area` gives what its centre cannot.
     return min(irradiance_by_seen(seen) / area * inverse_scale * inverse_scale * facing.area, 1e38);
+}
+
+// [1 / scene units²] Irradiance at a point by a light whose radiance times area is 1.
+float irradiance(Light light, vec3 position, vec3 normal) {
+    return beam_share(light, position - light.center) * irradiance_everywhere(light, position, normal);
 }

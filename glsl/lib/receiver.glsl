@@ -30,6 +30,15 @@ float dot_exact(vec3 a, vec3 b) {
 
 layout(constant_id = 61) const bool CONES = false;  // the view's receivers are those in its cone
 
+layout(constant_id = 65) const bool BEAM = false;  // the light's shine is kept in a cone
+
+// Whether a position relative to the eye is out of the cone that the light's shine is kept in.
+bool is_out_of_beam(View view, vec3 position) {
+    precise vec3 way = position - view.sphere.xyz;
+    precise float square = dot_exact(way, way);
+    return dot_exact(view.beam, way) < view.beam_cosine * sqrt(square);
+}
+
 // A direction or relative position in the frame of the view's face.
 vec3 to_face(View view, vec3 world) {
     return vec3(dot_exact(world, view.right), dot_exact(world, view.up), dot_exact(world, view.forward));
@@ -44,11 +53,12 @@ uint face_of(vec3 in_light, float reach) {
 }
 
 // Whether the sub-light's view has to look at a surface point: it lies in front of the light, belongs
-// to the view's face and cone, and at least a part of the sub-light is in front of it.
+// to the view's face and cone and to the light's beam, and at least a part of the sub-light is in front of it.
 // position: relative to the eye; normal: of the visible side.
 bool in_view(View view, vec3 position, vec3 normal) {
     if (CONES && cone_of(view.sphere, position) != view.cone) return false;
     vec3 way = position - view.center;
+    if (BEAM && is_out_of_beam(view, position)) return false;
     vec3 to_point = mapped(view, way);
     normal = mapped_normal(view, way, normal);
     precise vec3 in_light = vec3(dot_exact(to_point, view.light_u) * view.half_size.x * view.half_size.x,

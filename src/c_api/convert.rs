@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::call_result::{CallResult, Fault};
 use super::check::{self, extended};
 use super::types::*;
-use crate::scene::{AreaLight, Camera, LightShape};
+use crate::scene::{AreaLight, Beam, Camera, LightShape};
 use crate::technique::{KNOBS, Knob, Settings, Technique};
 
 /// The value that a number stands for.
@@ -166,6 +166,11 @@ pub fn light(given: &hs_light) -> CallResult<AreaLight> {
             )));
         }
     };
+    let beam = (given.cone_deg != [0.0; 2]).then_some(Beam {
+        direction: DVec3::from_array(given.normal),
+        inner_deg: given.cone_deg[0],
+        outer_deg: given.cone_deg[1],
+    });
     let light = AreaLight {
         name: String::new(),
         center: DVec3::from_array(given.center),
@@ -173,6 +178,7 @@ pub fn light(given: &hs_light) -> CallResult<AreaLight> {
         color: Vec3::from_array(given.color),
         // NaN is not below 0, and is refused.
         intensity: (given.intensity >= 0.0 || given.intensity.is_nan()).then_some(given.intensity),
+        beam,
     };
     light.validate()?;
     Ok(light)

@@ -184,6 +184,9 @@ pub struct hs_light {
     pub shape: u32,
     /// 0
     pub reserved: u32,
+    /// [degree] Inner and outer angle of the cone around `normal` that the shine of a disc or a sphere is kept in, 0 <= inner <= outer
+    /// <= 180; 0 and 0: it is kept in none.
+    pub cone_deg: [f64; 2],
 }
 
 structures! {

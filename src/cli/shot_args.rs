@@ -20,7 +20,7 @@ pub struct ShotArgs {
     pub shot: PathBuf,
     #[command(flatten)]
     knobs: KnobArgs,
-    /// Make the scene's own point lights spheres of this radius, spot lights discs, in scene units, 0 or more
+    /// Make the scene's own point and spot lights spheres of this radius, in scene units, 0 or more
     #[arg(long, value_name = "R")]
     radius: Option<f64>,
     /// Angular diameter of the scene's own directional lights in degrees, 0 to less than 180 [default: 0.533]

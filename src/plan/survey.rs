@@ -134,6 +134,12 @@ pub fn survey(
         near: Vec::new(),
         touching: false,
     };
+    let middle = side.cone.map(|cone| Cone::new(cone as usize));
+    if (side.light.beam.as_ref().zip(middle.as_ref()))
+        .is_some_and(|(beam, cone)| !beam.may_meet(cone))
+    {
+        return found;
+    }
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for index in 0..scene.triangles.len() {
         let corners = scene.corners_around(origin, index);

@@ -105,6 +105,8 @@ impl ViewPose {
                 .as_vec4()
                 .into(),
             cone: side.cone.map_or(ALL_CONES, |cone| cone + 1),
+            beam: array(light.beam.map_or(DVec3::ZERO, |beam| beam.axis())),
+            beam_cosine: light.beam.map_or(0.0, |beam| beam.least_cosine()) as f32,
         }
     }
 }
@@ -119,6 +121,7 @@ pub fn whole_light(
 ) -> shared::Light {
     let (u, v, n) = light.frame();
     let half = light.half_size();
+    let (beam_start, beam_slope) = light.beam.map_or((0.0, 0.0), |beam| beam.border());
     shared::Light {
         center: (light.center - origin).as_vec3().into(),
         u: u.as_vec3().into(),
@@ -129,6 +132,13 @@ pub fn whole_light(
         weight_sum,
         spread: light.spread() as u32,
         intensity,
+        beam: light
+            .beam
+            .map_or(DVec3::ZERO, |beam| beam.axis())
+            .as_vec3()
+            .into(),
+        beam_start: beam_start as f32,
+        beam_slope: beam_slope as f32,
         view_first: views.start,
         view_count: views.len() as u32,
     }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::DVec3;
 
-use crate::scene::{AreaLight, Ball, LightShape, Spread};
+use crate::scene::{AreaLight, Ball, Beam, LightShape, Spread};
 use crate::shared::HORIZON_ROUNDING;
 use crate::{Error, Result};
 
@@ -17,6 +17,7 @@ pub struct Emitter {
     /// The side it shines to; None where the shape has no plane (a point, a line): to all sides.
     normal: Option<DVec3>,
     disc: bool,
+    beam: Option<Beam>,
     /// Around the scene, relative to the eye.
     ball: Ball,
 }
@@ -57,11 +58,18 @@ impl Emitter {
             axes,
             normal,
             disc: light.is_round(),
+            beam: light.beam,
             ball: Ball {
                 center: ball.center - origin,
                 ..ball
             },
         })
+    }
+
+    /// Whether it shines to a point: its beam, if it has one, holds it.
+    pub fn shines_to(&self, point: DVec3) -> bool {
+        self.beam
+            .is_none_or(|beam| beam.share(point - self.center) > 0.0)
     }
 
     /// The flat light that a point sees of it; None inside a sphere, where all of it is seen.
@@ -229,6 +237,7 @@ mod tests {
             shape: LightShape::Disc { normal, radius },
             color: glam::Vec3::ONE,
             intensity: None,
+            beam: None,
         };
         let sides = |normal| {
             let emitter = Emitter::new(&point(normal, 0.0), BALL, DVec3::ZERO).expect("a light");

@@ -38,6 +38,7 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
         ("DISC_LIGHT", u32::from(view.is_round())),
         ("OBLIQUE", view.oblique.into()),
         ("PARALLEL", (view.view.parallel > 0.0).into()),
+        ("BEAM", (view.view.beam != [0.0; 3]).into()),
         ("CONES", (view.view.cone != ALL_CONES).into()),
         ("ACCUMULATE", light.accumulates().into()),
         ("LAYERS", set.recipe.layers.max(1)),

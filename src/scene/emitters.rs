@@ -17,7 +17,7 @@ use super::document::{Document, label};
 use super::notes::Notes;
 use super::options::LoadOptions;
 use super::tree::Placed;
-use super::{AreaLight, Camera, LightShape, SUN_ANGLE_DEG, Scene};
+use super::{AreaLight, Beam, Camera, LightShape, SUN_ANGLE_DEG, Scene};
 use crate::Result;
 
 const AREA: &str = "EXT_lights_area";
@@ -191,6 +191,7 @@ impl<'a> Emitters<'a> {
             shape,
             color: Vec3::from(json.color).max(Vec3::ZERO),
             intensity: json.intensity,
+            beam: None,
         }))
     }
 
@@ -205,6 +206,7 @@ impl<'a> Emitters<'a> {
         let json = self.document.get(index, "light", user)?;
         let name = label("light", index.value(), json.name.as_deref());
         let forward = Frame::of(world).forward;
+        let mut beam = None;
         let shape = match (&json.type_, self.punctual_radius) {
             (Checked::Invalid, _) => {
                 notes.add("a light of an invalid type is left out", &name);
@@ -226,13 +228,12 @@ impl<'a> Emitters<'a> {
             }
             (Checked::Valid(kind), Some(radius)) => {
                 self.radius_taken.set(true);
-                match kind {
-                    Type::Spot => LightShape::Disc {
-                        normal: forward,
-                        radius,
-                    },
-                    _ => LightShape::Sphere { radius },
-                }
+                beam = (json.spot.as_ref().filter(|_| *kind == Type::Spot)).map(|spot| Beam {
+                    direction: forward,
+                    inner_deg: f64::from(spot.inner_cone_angle).to_degrees(),
+                    outer_deg: f64::from(spot.outer_cone_angle).to_degrees(),
+                });
+                LightShape::Sphere { radius }
             }
         };
         notes.add(
@@ -245,6 +246,7 @@ impl<'a> Emitters<'a> {
             shape,
             color: Vec3::from(json.color).max(Vec3::ZERO),
             intensity: None,
+            beam,
         }))
     }
 

@@ -1,5 +1,6 @@
 //! Geometry of area lights: what all shapes have in common. A shape's own file says the rest.
 
+mod beam;
 mod disc;
 mod rect;
 mod sphere;
@@ -9,6 +10,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+pub use beam::Beam;
 pub use sphere::Cone;
 pub use sun::{ANGLE_DEG as SUN_ANGLE_DEG, Ball, mapped};
 
@@ -231,6 +233,14 @@ impl AreaLight {
         if !self.intensity.is_none_or(|i| i.is_finite() && i >= 0.0) {
             return Some("its intensity must be finite and not negative");
         }
-        self.fault_of_shape()
+        self.fault_of_shape().or_else(|| self.fault_of_beam())
+    }
+
+    fn fault_of_beam(&self) -> Option<&'static str> {
+        let beam = self.beam.as_ref()?;
+        match self.shape {
+            LightShape::Disc { .. } | LightShape::Sphere { .. } => beam.fault(),
+            _ => Some("a cone is for discs and spheres"),
+        }
     }
 }

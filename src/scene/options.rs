@@ -5,7 +5,7 @@
 pub struct LoadOptions {
     /// Which scene of the file, counted from 0. None: its default scene, else its first.
     pub scene: Option<usize>,
-    /// [scene units] ≥ 0. Point lights become spheres of this radius, spot lights discs. None: they are left out.
+    /// [scene units] ≥ 0. Point and spot lights become spheres of this radius. None: they are left out.
     pub punctual_radius: Option<f64>,
     /// [degree] \[0, 180) Angular diameter of directional lights. None: the sun's.
     pub sun_angle_deg: Option<f64>,

@@ -9,7 +9,9 @@ use serde::de::IgnoredAny;
 
 use super::{MAX_SIZE, Settings, Shot, budget_map};
 use crate::scene::gltf::{self, Blend, Limits, LoadOptions};
-use crate::scene::{AreaLight, Camera, LightShape, MAX_COORDINATE, SUN_ANGLE_DEG, Scene, file};
+use crate::scene::{
+    AreaLight, Beam, Camera, LightShape, MAX_COORDINATE, SUN_ANGLE_DEG, Scene, file,
+};
 use crate::{Error, Result};
 
 /// [pixel] Height (and without an aspect ratio, width) of an image for which nobody states a size.
@@ -23,7 +25,7 @@ const FOR_PEOPLE: [&str; 2] = ["name", "what"];
 pub struct Overrides {
     /// [pixel] Width and height.
     pub size: Option<(u32, u32)>,
-    /// [scene units] ≥ 0. Point lights of the scene become spheres of this radius, spot lights discs.
+    /// [scene units] ≥ 0. Point and spot lights of the scene become spheres of this radius.
     pub radius: Option<f64>,
     /// [degree] \[0, 180) Angular diameter of the scene's directional lights.
     pub sun_angle_deg: Option<f64>,
@@ -86,6 +88,8 @@ struct LightFile {
     radius: Option<f64>,
     direction: Option<[f64; 3]>,
     angle_deg: Option<f64>,
+    /// [degree] Inner and outer, from the direction of a disc's normal or of a sphere's "direction".
+    cone_deg: Option<[f64; 2]>,
     #[serde(default = "white")]
     color: [f32; 3],
     intensity: Option<f32>,
@@ -435,12 +439,24 @@ impl LightFile {
                 angle_deg: self.angle_deg.unwrap_or(SUN_ANGLE_DEG),
             },
         };
+        let beam = self.cone_deg.map(|[inner_deg, outer_deg]| {
+            let direction = match self.kind {
+                LightKind::Disc => self.normal,
+                _ => self.direction,
+            };
+            Beam {
+                direction: direction.unwrap_or([0.0, -1.0, 0.0]).into(),
+                inner_deg,
+                outer_deg,
+            }
+        });
         Ok(AreaLight {
             name: format!("light {index}"),
             center: center.into(),
             shape,
             color: Vec3::from(self.color),
             intensity: self.intensity,
+            beam,
         })
     }
 }

@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
+use super::beam;
 use super::facing::Facing;
 use crate::shared::{ARCTANGENT, IRRADIANCE_NODES, Light, SPREAD_POINT};
 
@@ -26,6 +27,10 @@ struct SeenLight {
 ///
 /// Relative error: below 1e-3 where the shader states it. Finite everywhere.
 pub fn irradiance(light: &Light, position: Vec3, normal: Vec3) -> f32 {
+    beam::share(light, position) * irradiance_everywhere(light, position, normal)
+}
+
+fn irradiance_everywhere(light: &Light, position: Vec3, normal: Vec3) -> f32 {
     let facing = Facing::new(light, position, normal);
     let (light, way) = (&facing.light, facing.way);
     if light.spread == SPREAD_POINT {

@@ -169,6 +169,11 @@ pub fn in_view(view: &View, position: Vec3, normal: Vec3) -> bool {
     if view.cone != ALL_CONES && cone_of(view.sphere, position) != view.cone {
         return false;
     }
+    let from_middle = position - Vec3::from_slice(&view.sphere[..3]);
+    let length = from_middle.dot(from_middle).sqrt();
+    if Vec3::from(view.beam).dot(from_middle) < view.beam_cosine * length {
+        return false;
+    }
     let way = position - Vec3::from(view.center);
     let (to_point, normal) = (mapped(view, way), mapped_normal(view, way, normal));
     let half = Vec2::from(view.half_size);

@@ -2,13 +2,17 @@
 
 use glam::{Vec2, Vec3};
 
+use super::beam;
 use super::facing::Facing;
 use crate::shared::{HORIZON_ROUNDING, Light, SPREAD_POINT};
 
-/// 0 umbra … 1 lit; 0 where the surface faces away from the whole light or lies behind it.
+/// 0 umbra … 1 lit; 0 where the surface faces away from the whole light, lies behind it or out of its beam.
 ///
 /// `hidden`: sum over the light's views of what they hide, each weighed by its `weight`.
 pub fn visibility(light: &Light, position: Vec3, normal: Vec3, hidden: f64) -> f64 {
+    if beam::share(light, position) == 0.0 {
+        return 0.0;
+    }
     let facing = Facing::new(light, position, normal);
     if facing.inside {
         return 1.0;

@@ -207,6 +207,7 @@ fn intensity_does_not_end_with_the_area() {
     }
     let given = |radiance, size| AreaLight {
         intensity: Some(radiance),
+        beam: None,
         ..above([size; 2], true)
     };
     let area = std::f64::consts::PI * (0.1 * DISTANCE).powi(2);

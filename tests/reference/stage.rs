@@ -73,6 +73,7 @@ pub fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
         shape,
         color: Vec3::ONE,
         intensity: None,
+        beam: None,
     };
     let camera = Camera {
         name: String::new(),

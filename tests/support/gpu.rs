@@ -188,6 +188,7 @@ pub fn light(center: DVec3, shape: LightShape) -> AreaLight {
         shape,
         color: Vec3::ONE,
         intensity: None,
+        beam: None,
     }
 }
 

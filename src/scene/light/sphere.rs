@@ -60,6 +60,17 @@ impl Cone {
         (self.axes[0] + along(0) + along(1)).normalize()
     }
 
+    /// [radian] Between the middle and the farthest of its corners.
+    pub fn half_angle(&self) -> f64 {
+        let sides = [self.lower, self.upper];
+        let corners = (0..4).map(|i| {
+            let [first, second] = [sides[i & 1][0], sides[i >> 1][1]];
+            (self.axes[0] + self.axes[1] * first + self.axes[2] * second).normalize()
+        });
+        let cosines = corners.map(|corner| corner.dot(self.middle()));
+        cosines.fold(1.0, f64::min).acos()
+    }
+
     /// How far a way from the centre is inside each of its four sides; ≥ 0 within and at what rounding makes of the border.
     pub fn distances(&self) -> [DVec3; 4] {
         const ROUNDING: f64 = 1e-5;

@@ -179,6 +179,7 @@ impl Stage {
                 },
                 color: Vec3::ONE,
                 intensity: None,
+                beam: None,
             }],
             settings: Settings::default(),
             budget_map: None,

@@ -144,6 +144,7 @@ impl Stage {
             shape,
             color: Vec3::ONE,
             intensity: None,
+            beam: None,
         };
         let camera = Camera {
             name: String::new(),
