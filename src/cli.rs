@@ -23,6 +23,7 @@ pub mod plan;
 mod progress;
 pub mod reference;
 pub mod render;
+pub mod shaders;
 pub mod shot_args;
 mod stats;
 pub mod study;

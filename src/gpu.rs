@@ -2,6 +2,7 @@
 //! and a recorder that labels, times and orders passes.
 
 mod commands;
+mod cost;
 mod create;
 mod device;
 mod draw;
@@ -22,6 +23,7 @@ mod upload;
 mod validation;
 
 pub use commands::{Commands, Groups};
+pub use cost::Cost;
 pub use device::{Gpu, Options};
 pub use draw::{Attachments, Draw, MAX_COLORS};
 pub use host::{HostBuffer, HostImage, HostImageInfo, ImageState, Loan};

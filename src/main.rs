@@ -31,6 +31,7 @@ struct Arguments {
 enum Command {
     Render(cli::render::Args),
     Plan(cli::plan::Args),
+    Shaders(cli::shaders::Args),
     Reference(cli::reference::Args),
     Compare(cli::compare::Args),
     Study(cli::study::Args),
@@ -45,6 +46,7 @@ impl Command {
         match self {
             Self::Render(args) => cli::render::check(args),
             Self::Plan(args) => cli::plan::check(args),
+            Self::Shaders(args) => cli::shaders::check(args),
             Self::Reference(args) => cli::reference::check(args),
             Self::Compare(args) => cli::compare::check(args),
             Self::Study(args) => cli::study::check(args),
@@ -56,6 +58,7 @@ impl Command {
         match self {
             Self::Render(args) => cli::render::run(args, given),
             Self::Plan(args) => cli::plan::run(args, given),
+            Self::Shaders(args) => cli::shaders::run(args, given),
             Self::Reference(args) => cli::reference::run(args, given),
             Self::Compare(args) => cli::compare::run(args),
             Self::Study(args) => cli::study::run(args, given),

@@ -2,6 +2,7 @@
 
 mod chain;
 mod constants;
+mod costs;
 mod counts;
 mod effect;
 mod notes;
@@ -21,6 +22,7 @@ use crate::shot::Shot;
 use chain::{Chain, Loans};
 use step::Inputs;
 
+pub use costs::{PassCost, static_costs};
 pub use effect::{
     CasterImages, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, SlotImages,
 };

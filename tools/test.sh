@@ -4,12 +4,13 @@
 set -euo pipefail
 
 usage() {
-    echo "usage: tools/test.sh [--slow | --driver NAME | --width BITS | --gpu-av]"
+    echo "usage: tools/test.sh [--slow | --static-cost | --driver NAME | --width BITS | --gpu-av]"
     echo "Checks format and lints, builds the library without the program, and runs all tests."
     echo "GPU tests run on any Vulkan device, lavapipe included; without one they fail."
     echo
     echo "Runs of their own, of tests alone:"
     echo "  --slow         the exhaustive versions of the tests that have one"
+    echo "  --static-cost  registers, spills and instructions of all passes on a GPU that need not be there"
     echo "  --driver NAME  the tests that render, on another driver: swiftshader, which is fetched"
     echo "  --width BITS   the same on lavapipe with vectors of 128 or 256 bits: subgroups of 4 or 8"
     echo "  --gpu-av       the same under GPU-assisted validation, which finds accesses out of bounds"
@@ -22,7 +23,7 @@ case ${1-} in
         usage
         exit 0
         ;;
-    --slow | --gpu-av) mode=${1#--} ;;
+    --slow | --static-cost | --gpu-av) mode=${1#--} ;;
     --driver | --width)
         mode=${1#--}
         value=${2-}
@@ -102,6 +103,7 @@ case $mode in
         step cargo test
         ;;
     slow) step slow_tests ;;
+    static-cost) step tools/static_cost.sh ;;
     driver)
         if [ "$value" != swiftshader ]; then
             echo "test: the other driver is swiftshader, not \"$value\"" >&2

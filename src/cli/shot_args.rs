@@ -123,7 +123,13 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
 
 impl DeviceArgs {
     pub fn open(&self) -> Result<Arc<Gpu>> {
+        self.open_for(false)
+    }
+
+    /// `costs`: to tell what pipelines cost.
+    fn open_for(&self, costs: bool) -> Result<Arc<Gpu>> {
         Gpu::open(&Options {
+            costs,
             device: self.device.clone(),
             validate: self.validate,
             cache_folder: super::project_folders().map(|folders| folders.cache_dir().to_path_buf()),
@@ -135,7 +141,15 @@ impl DeviceArgs {
     /// Runs `work` on an open device, closes the device, and fails if the validation layer has said
     /// anything until then.
     pub fn with_device<T>(&self, work: impl FnOnce(&Arc<Gpu>) -> Result<T>) -> Result<T> {
-        let gpu = self.open()?;
+        Self::with_gpu(self.open()?, work)
+    }
+
+    /// As [`Self::with_device`], on a device that tells what pipelines cost, if it does.
+    pub fn with_costs<T>(&self, work: impl FnOnce(&Arc<Gpu>) -> Result<T>) -> Result<T> {
+        Self::with_gpu(self.open_for(true)?, work)
+    }
+
+    fn with_gpu<T>(gpu: Arc<Gpu>, work: impl FnOnce(&Arc<Gpu>) -> Result<T>) -> Result<T> {
         let messages = gpu.validation_messages();
         let result = work(&gpu);
         drop(gpu);

@@ -1,6 +1,6 @@
 //! What a device is made of.
 
-use ash::vk;
+use ash::{khr, vk};
 use gpu_allocator::AllocationSizes;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
@@ -12,18 +12,38 @@ pub(super) fn create_device(
     instance: &ash::Instance,
     physical: vk::PhysicalDevice,
     family: u32,
+    costs: bool,
 ) -> Result<ash::Device> {
     let mut features = Features::required();
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(family)
         .queue_priorities(&[1.0])];
-    let info = vk::DeviceCreateInfo::default()
+    let mut told = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+        .pipeline_executable_info(true);
+    let extensions = [khr::pipeline_executable_properties::NAME.as_ptr()];
+    let mut info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_features(&features.core)
         .push_next(&mut features.v12)
         .push_next(&mut features.v13);
+    if costs {
+        info = info
+            .enabled_extension_names(&extensions)
+            .push_next(&mut told);
+    }
     // SAFETY: all that `info` points to outlives the call; the features were found to be there.
     unsafe { instance.create_device(physical, &info, None) }.map_err(failed("vkCreateDevice"))
+}
+
+/// Whether the driver says what pipelines cost.
+pub(super) fn tells_costs(instance: &ash::Instance, physical: vk::PhysicalDevice) -> bool {
+    let name = khr::pipeline_executable_properties::NAME;
+    // SAFETY: the device is the instance's.
+    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) };
+    let extensions = extensions.unwrap_or_default();
+    let is_it =
+        |extension: &vk::ExtensionProperties| extension.extension_name_as_c_str() == Ok(name);
+    extensions.iter().any(is_it)
 }
 
 pub(super) fn create_allocator(

@@ -3,13 +3,14 @@
 use std::ffi::CString;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use ash::vk::Handle;
-use ash::{ext, vk};
+use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
 
-use super::create::{create_allocator, create_cache, create_device, tick_ns};
+use super::create::{create_allocator, create_cache, create_device, tells_costs, tick_ns};
 use super::failed::failed;
 use super::host_device::HostDevice;
 use super::instance::{InstanceGuard, create_instance, load};
@@ -29,6 +30,9 @@ pub struct Options {
     pub cache_folder: Option<PathBuf>,
     /// [byte] Plans that take more are refused. None: those that take more than the device has.
     pub max_memory: Option<u64>,
+    /// Pipelines can say what they cost ([`ComputePass::costs`](super::ComputePass::costs)), where the driver tells. They are compiled
+    /// anew each time then.
+    pub costs: bool,
     /// Where all Vulkan functions come from, which must stay there while the device is open. None: the
     /// system's loader.
     pub loader: Option<vk::PFN_vkGetInstanceProcAddr>,
@@ -48,10 +52,13 @@ pub struct Gpu {
     pub(super) queue: vk::Queue,
     /// Queue submissions need external synchronization.
     pub(super) submission: Mutex<()>,
+    /// Something was.
+    pub(super) submitted: AtomicBool,
     pub(super) family: u32,
     pub(super) allocator: ManuallyDrop<Mutex<Allocator>>,
     pub(super) cache: vk::PipelineCache,
     cache_file: Option<PathBuf>,
+    pub(super) statistics: Option<khr::pipeline_executable_properties::Device>,
     /// [ns] Length of a timestamp tick; 0 = the queue has no timestamps.
     pub(super) tick_ns: f64,
     callbacks: Option<Callbacks>,
@@ -91,7 +98,8 @@ impl Gpu {
         } else {
             None
         };
-        let opened = create_device(instance, physical, family).and_then(|device| {
+        let costs = options.costs && tells_costs(instance, physical);
+        let opened = create_device(instance, physical, family, costs).and_then(|device| {
             create_allocator(instance, physical, &device)
                 .inspect_err(|_| unsafe {
                     // SAFETY: nothing was created on it.
@@ -117,11 +125,15 @@ impl Gpu {
         let debug = debug.then(|| ext::debug_utils::Device::new(instance, &device));
         // SAFETY: the family has at least one queue.
         let queue = unsafe { device.get_device_queue(family, 0) };
+        // What is found in a cache has no statistics.
         let cache_file = options
             .cache_folder
             .as_ref()
+            .filter(|_| !costs)
             .map(|folder| folder.join(format!("pipelines-{}.bin", info.uuid)));
         let cache = create_cache(&device, cache_file.as_deref(), None);
+        let statistics =
+            costs.then(|| khr::pipeline_executable_properties::Device::new(instance, &device));
         Ok(Arc::new(Self {
             entry: Some(entry),
             instance: guard.release(),
@@ -136,6 +148,8 @@ impl Gpu {
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             cache,
             cache_file,
+            statistics,
+            submitted: AtomicBool::new(false),
             tick_ns,
             callbacks: None,
             limits,
@@ -178,6 +192,8 @@ impl Gpu {
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             cache,
             cache_file: None,
+            statistics: None,
+            submitted: AtomicBool::new(false),
             tick_ns: 0.0,
             callbacks,
             limits: requirements::limits(&instance, host.physical),
@@ -271,7 +287,8 @@ impl Drop for Gpu {
         // SAFETY: everything that lives on the device keeps an Arc of it, so nothing is left; each
         // object is destroyed once, children before parents.
         unsafe {
-            if self.entry.is_some() {
+            // Devices that only compile cannot wait.
+            if self.entry.is_some() && self.submitted.load(Ordering::Relaxed) {
                 let _ = self.device.device_wait_idle();
             }
             self.store_cache();

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::cost::Cost;
 use super::device::Gpu;
 use super::failed::failed;
 use super::host::HostImage;
@@ -86,7 +87,7 @@ impl ComputePass {
         Self::with_each(gpu, name, shader, constants, &[&[resources]])
     }
 
-    /// A pass that can be recorded with each of several lists of resources.
+    /// A pass that can be recorded with each of several lists of resources; without any it can only say what it costs.
     ///
     /// # Errors
     /// As for [`Self::new`].
@@ -108,6 +109,14 @@ impl ComputePass {
     /// With the list of resources of that number, or the first.
     pub fn with(&self, list: usize) -> Bound<'_> {
         self.0.with(list)
+    }
+
+    /// What the driver says that its shaders cost. Empty unless the device is open for it.
+    ///
+    /// # Errors
+    /// A Vulkan call failed.
+    pub fn costs(&self) -> Result<Vec<Cost>> {
+        self.0.gpu.costs_of(self.0.pipeline)
     }
 }
 
@@ -146,6 +155,11 @@ impl GraphicsPass {
     pub fn with(&self, list: usize) -> Bound<'_> {
         self.0.with(list)
     }
+
+    /// As `ComputePass::costs`.
+    pub fn costs(&self) -> Result<Vec<Cost>> {
+        self.0.gpu.costs_of(self.0.pipeline)
+    }
 }
 
 impl Pass {
@@ -179,6 +193,9 @@ impl Pass {
             pool: vk::DescriptorPool::null(),
         };
         pass.create_layouts(name, &bindings, stages)?;
+        if lists.is_empty() {
+            return Ok(pass);
+        }
         pass.create_sets(name, &bindings, lists.len())?;
         for (set, sources) in pass.sets.iter().zip(lists) {
             for binding in bindings.values() {

@@ -43,6 +43,7 @@ pub(super) fn create_compute_pipeline(
     let constants = constants.info();
     let stage = module.stage(vk::ShaderStageFlags::COMPUTE, &constants);
     let info = vk::ComputePipelineCreateInfo::default()
+        .flags(gpu.pipeline_flags())
         .stage(stage)
         .layout(layout);
     // SAFETY: all that `info` points to outlives the call.
@@ -113,6 +114,7 @@ pub(super) fn create_graphics_pipeline(
     let dynamic = vk::PipelineDynamicStateCreateInfo::default()
         .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
     let info = vk::GraphicsPipelineCreateInfo::default()
+        .flags(gpu.pipeline_flags())
         .stages(&stages)
         .vertex_input_state(&input)
         .input_assembly_state(&assembly)

@@ -1,6 +1,7 @@
 //! A command buffer of the library's own, which it submits and waits for.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use ash::vk;
 
@@ -139,6 +140,7 @@ impl Recorder {
                 .end_command_buffer(self.commands)
                 .map_err(failed("vkEndCommandBuffer"))?;
             let submission = self.gpu.submission.lock();
+            self.gpu.submitted.store(true, Ordering::Relaxed);
             device
                 .queue_submit2(self.gpu.queue, &submit, self.fence)
                 .map_err(failed("vkQueueSubmit2"))?;

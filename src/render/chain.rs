@@ -10,7 +10,7 @@ use super::constants;
 use super::pipelines::{Lists, Pipelines};
 use super::step::{Inputs, Recording};
 use crate::error::Result;
-use crate::frame::{Lent, Scope, Step};
+use crate::frame::{Lent, Pass, Scope, Step};
 use crate::gpu::{self, Commands, Constants, Gpu, Resources};
 use crate::plan::{Plan, ViewSet};
 
@@ -42,35 +42,12 @@ impl Chain {
     /// # Errors
     /// An allocation failed, or a pipeline cannot be created.
     pub fn new(gpu: &Arc<Gpu>, plan: &Plan, resources: &Resources, loans: &Loans) -> Result<Self> {
-        let of_frame = constants::of_frame(plan);
-        let of_views = constants_of_views(plan, &of_frame);
-        let mut known = BTreeMap::new();
-        let (mut pipelines, mut of_step) = (Vec::new(), Vec::new());
-        for step in &plan.graph.steps {
-            let base = match step.scope {
-                Scope::View(view) => &of_views[view as usize],
-                Scope::Frame | Scope::Light(_) => &of_frame,
-            };
-            let all = constants::of_pass(&step.pass, base.clone());
-            let key = (step.pass, gpu::used(&all, &step.pass.shaders())?);
-            let index = match known.get(&key) {
-                Some(&index) => index,
-                None => {
-                    let lists = lists(step.pass.lent, resources, loans);
-                    pipelines.push(Pipelines::new(
-                        gpu,
-                        plan,
-                        &step.pass,
-                        &all,
-                        &lists,
-                        loans.output,
-                    )?);
-                    known.insert(key, pipelines.len() - 1);
-                    pipelines.len() - 1
-                }
-            };
-            of_step.push(index);
-        }
+        let Distinct { passes, of_step } = Distinct::of(plan)?;
+        let compiled = |(pass, constants): &(Pass, Constants)| {
+            let lists = lists(pass.lent, resources, loans);
+            Pipelines::new(gpu, plan, pass, constants, Some(&lists), loans.output)
+        };
+        let pipelines = passes.iter().map(compiled).collect::<Result<_>>()?;
         let side = |set: &ViewSet| vec![set.settings.map; set.views.len()];
         Ok(Self {
             pipelines,
@@ -108,6 +85,38 @@ impl Chain {
             }
         }
         Ok(())
+    }
+}
+
+/// The passes of a plan that differ in shaders or constants.
+pub struct Distinct {
+    pub passes: Vec<(Pass, Constants)>,
+    /// Which of them each step of the plan's graph is.
+    pub of_step: Vec<usize>,
+}
+
+impl Distinct {
+    /// # Errors
+    /// A shader is missing.
+    pub fn of(plan: &Plan) -> Result<Self> {
+        let of_frame = constants::of_frame(plan);
+        let of_views = constants_of_views(plan, &of_frame);
+        let mut known = BTreeMap::new();
+        let (mut passes, mut of_step) = (Vec::new(), Vec::new());
+        for step in &plan.graph.steps {
+            let base = match step.scope {
+                Scope::View(view) => &of_views[view as usize],
+                Scope::Frame | Scope::Light(_) => &of_frame,
+            };
+            let all = constants::of_pass(&step.pass, base.clone());
+            let key = (step.pass, gpu::used(&all, &step.pass.shaders())?);
+            let index = *known.entry(key).or_insert_with(|| {
+                passes.push((step.pass, all));
+                passes.len() - 1
+            });
+            of_step.push(index);
+        }
+        Ok(Self { passes, of_step })
     }
 }
 

@@ -7,7 +7,8 @@ use ash::vk;
 use crate::error::{Error, Result};
 use crate::frame::{Drawn, Pass, Target, Work};
 use crate::gpu::{
-    Blend, ComputePass, Constants, Gpu, GraphicsPass, GraphicsState, ImageKind, Resources, Sources,
+    Blend, ComputePass, Constants, Cost, Gpu, GraphicsPass, GraphicsState, ImageKind, Resources,
+    Sources,
 };
 use crate::plan::Plan;
 
@@ -28,7 +29,8 @@ pub enum Pipelines {
 }
 
 impl Pipelines {
-    /// `output`: the format of the image that a host lends for the result.
+    /// `lists`: what it is recorded with, of which there may be none; None: it is compiled alone. `output`: the format of the image
+    /// that a host lends for the result.
     ///
     /// # Errors
     /// A resource that a shader names is missing, or a Vulkan call failed.
@@ -37,13 +39,13 @@ impl Pipelines {
         plan: &Plan,
         pass: &Pass,
         constants: &Constants,
-        lists: &Lists,
+        lists: Option<&Lists>,
         output: vk::Format,
     ) -> Result<Self> {
-        let lists: Vec<&Sources> = lists.iter().map(Vec::as_slice).collect();
-        if lists.is_empty() {
+        if lists.is_some_and(Vec::is_empty) {
             return Ok(Self::None);
         }
+        let lists: Vec<&Sources> = lists.into_iter().flatten().map(Vec::as_slice).collect();
         match pass.work {
             Work::Clear(_) | Work::Upload | Work::CopyLayer { .. } => Ok(Self::None),
             Work::Draw {
@@ -89,6 +91,24 @@ impl Pipelines {
                     opaque: first,
                     masked: masked.transpose()?,
                 })
+            }
+        }
+    }
+
+    /// What its shaders cost; see [`ComputePass::costs`].
+    ///
+    /// # Errors
+    /// A Vulkan call failed.
+    pub fn costs(&self) -> Result<Vec<Cost>> {
+        match self {
+            Self::None => Ok(Vec::new()),
+            Self::Compute(pass) => pass.costs(),
+            Self::Draw(pass) => pass.costs(),
+            Self::Casters { opaque, masked } => {
+                let masked = masked
+                    .as_ref()
+                    .map_or(Ok(Vec::new()), GraphicsPass::costs)?;
+                Ok([opaque.costs()?, masked].concat())
             }
         }
     }

@@ -24,6 +24,17 @@ fn refuses_shot(change: impl FnOnce(&mut Value), words: &[&str]) {
     folder.refuses(&RENDER, words);
 }
 
+/// lavapipe is no GPU: its shaders have no registers to tell of. `tools/static_cost.sh` asks a driver that has.
+#[test]
+fn costs_that_the_driver_does_not_tell() {
+    let folder = Folder::new();
+    folder.write_shot(&plate());
+    folder.refuses(
+        &["shaders", "shot.json"],
+        &["does not say what shaders cost"],
+    );
+}
+
 #[test]
 fn scenes_that_cannot_be_read() {
     let folder = Folder::new();
