@@ -15,6 +15,7 @@ layout(location = 0) flat in vec4 plane;
 layout(location = 1) flat in vec2 z_range;
 layout(location = 2) in vec2 uv;
 layout(location = 3) flat in uint surface_index;
+layout(location = 4) in vec3 color;  // [0, 1] linear
 
 layout(location = 0) out vec4 position_world;  // [scene units] relative to the eye; w = 1
 layout(location = 1) out vec4 normal_world;    // unit vector towards the camera's side; w = 0
@@ -57,6 +58,6 @@ void main() {
     if (TEXTURED && is_hole(surface, uv)) discard;
     position_world = vec4(position_on_ray(), 1.0);
     normal_world = vec4(front ? plane.xyz : -plane.xyz, 0.0);
-    vec3 color = TEXTURED ? linear_of(texture_at(surface, uv).rgb) : vec3(1.0);
-    albedo = vec4(color * surface.base_color.rgb, 1.0);
+    vec3 texel = TEXTURED ? linear_of(texture_at(surface, uv).rgb) : vec3(1.0);
+    albedo = vec4(texel * color * surface.base_color.rgb, 1.0);
 }

@@ -70,6 +70,8 @@ pub struct Plan {
     pub neighbour_visibility: bool,
     /// The scene has textures that the frame needs.
     pub textured: bool,
+    /// Its vertices have colours that the frame needs.
+    pub colored: bool,
     /// The scene has alpha-masked triangles.
     pub masked: bool,
     /// The camera's rays are parallel.
@@ -103,6 +105,7 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     let frustum = Frustum::new(shot);
     let mut plan = Plan {
         textured: reads_textures(shot, outputs),
+        colored: reads_colors(shot, outputs) && !shot.scene.colors.is_empty(),
         multisampled: outputs.picture && shot.settings.multisample > 1,
         budget: Budget {
             mapped: shot.budget_map.is_some(),
@@ -138,9 +141,14 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
 
 /// Whether the frame needs the scene's textures: for the picture, for holes, or for what hides shadows.
 fn reads_textures(shot: &Shot, outputs: Outputs) -> bool {
-    let masks_budgets = shot.settings.budget_masking < 1.0 && shot.settings.budget.is_some();
-    let wanted = outputs.picture || shot.scene.has_masked() || masks_budgets;
+    let wanted = reads_colors(shot, outputs) || shot.scene.has_masked();
     wanted && !shot.scene.textures.is_empty()
+}
+
+/// Whether the colours of surfaces matter.
+fn reads_colors(shot: &Shot, outputs: Outputs) -> bool {
+    let masks_budgets = shot.settings.budget_masking < 1.0 && shot.settings.budget.is_some();
+    outputs.picture || masks_budgets
 }
 
 impl Plan {
@@ -221,6 +229,7 @@ impl Plan {
             multisampled: false,
             neighbour_visibility: settings.neighbour_visibility,
             textured: false,
+            colored: false,
             masked: false,
             orthographic: false,
             tells_casters: false,

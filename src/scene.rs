@@ -39,6 +39,8 @@ pub struct Scene {
     /// [texture widths, heights] One per vertex, KHR_texture_transform applied; empty when no material
     /// has a texture.
     pub texcoords: Vec<Vec2>,
+    /// [0, 1] linear RGB, multiplied with the material's colour; one per vertex, or none.
+    pub colors: Vec<Vec3>,
     /// Three vertices per triangle, counter-clockwise seen from the front; opaque triangles first,
     /// then the alpha-masked ones. Every index is below `positions.len()`.
     pub triangles: Vec<[u32; 3]>,

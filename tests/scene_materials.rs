@@ -2,7 +2,7 @@
 
 mod support;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use halfshade::scene::Wrap;
 use halfshade::scene::gltf::{LoadOptions, load};
 use serde_json::{Value, json};
@@ -171,4 +171,42 @@ fn images_come_from_files_views_and_data_uris() {
     assert!(photo.rgba[0].abs_diff(200) < 8 && photo.rgba[3] == 255);
     assert_eq!((dot.width, dot.height, dot.linear), (1, 1, false));
     assert_eq!(dot.wrap, [Wrap::Clamp, Wrap::Mirror]);
+}
+
+#[test]
+fn vertices_have_colours() {
+    let half = [0u16, 65535, 13107, 65535].repeat(3);
+    let half: Vec<u8> = half.iter().flat_map(|share| share.to_le_bytes()).collect();
+    let floats = bytes_of(&[0.25, 0.5, 7.0, -1.0, f32::NAN, 1.0, 0.0, 0.0, 0.0]);
+    let mut gltf = Gltf::new();
+    for colors in [
+        None,
+        Some((U16, "VEC4", half)),
+        None,
+        Some((F32, "VEC3", floats)),
+    ] {
+        let mut attributes = json!({});
+        if let Some((component, kind, bytes)) = colors {
+            let color = gltf.accessor(&bytes, component, kind, 3);
+            gltf.json["accessors"][color]["normalized"] = (component == U16).into();
+            attributes["COLOR_0"] = color.into();
+        }
+        let position = gltf.positions(&SQUARE[..3]);
+        add_primitive(&mut gltf, position, json!({"attributes": attributes}));
+    }
+    let scene = gltf.load().unwrap();
+    let first = [Vec3::ONE; 3];
+    let second = [Vec3::new(0.0, 1.0, 0.2); 3];
+    let last = [
+        Vec3::new(0.25, 0.5, 1.0),
+        Vec3::new(0.0, 0.0, 1.0),
+        Vec3::ZERO,
+    ];
+    assert_eq!(scene.colors, [first, second, first, last].concat());
+    assert!(noted(&scene, "the alpha of vertex colours is ignored"));
+    // An accessor of fewer elements than there are vertices.
+    let color = gltf.json["accessors"].as_array().unwrap().len() - 2;
+    gltf.json["accessors"][color]["count"] = 2.into();
+    assert!(gltf.error().contains("vertex 2 has no colour"));
+    assert!(Gltf::triangle().load().unwrap().colors.is_empty());
 }

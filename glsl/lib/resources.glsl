@@ -35,6 +35,7 @@
 #define RESOURCE_surfaces ARRAY(10, Surface, surfaces)
 #define RESOURCE_texcoords ARRAY(11, vec2, texcoords)
 #define RESOURCE_vertex_surfaces ARRAY(12, uint, vertex_surfaces)
+#define RESOURCE_vertex_colors ARRAY(64, vec3, vertex_colors)
 #define RESOURCE_texels ARRAY(13, uint, texels)
 
 // A host's.

@@ -97,6 +97,9 @@ pub const RESOURCES: &[Resource] = &[
     Resource::copied("texcoords", |s| {
         Shape::Buffer(s.inventory.texcoords * 8).when(s.textured)
     }),
+    Resource::copied("vertex_colors", |s| {
+        Shape::Buffer(s.inventory.colors * 12).when(s.colored)
+    }),
     Resource::copied("vertex_surfaces", |s| {
         Shape::Buffer(s.inventory.vertices * 4).when(s.masked)
     }),

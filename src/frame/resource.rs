@@ -42,6 +42,8 @@ pub struct Sizes {
     pub multisampled: bool,
     /// The scene has textures that the frame needs.
     pub textured: bool,
+    /// Its vertices have colours that the frame needs.
+    pub colored: bool,
     /// The scene has alpha-masked triangles.
     pub masked: bool,
     /// Some of its triangles cast no shadows.
@@ -87,6 +89,7 @@ pub struct Inventory {
     pub triangles: u64,
     pub materials: u64,
     pub texcoords: u64,
+    pub colors: u64,
     /// [byte] Of all textures.
     pub texels: u64,
     /// Of a host's meshes in a frame.
@@ -198,6 +201,7 @@ impl Inventory {
             triangles: scene.triangles.len() as u64,
             materials: scene.materials.len() as u64,
             texcoords: scene.texcoords.len() as u64,
+            colors: scene.colors.len() as u64,
             texels: texels.sum::<usize>() as u64,
             instances: 0,
         }

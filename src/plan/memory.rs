@@ -72,6 +72,7 @@ impl Plan {
             picture: self.outputs.picture,
             multisampled: self.multisampled,
             textured: self.textured,
+            colored: self.colored,
             masked: self.masked,
             tells_casters: self.tells_casters,
             lights: self.lights.len() as u32,

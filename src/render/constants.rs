@@ -8,6 +8,7 @@ use crate::shared::ALL_CONES;
 /// What all passes of a frame have in common.
 pub fn of_frame(plan: &Plan) -> Constants {
     Constants::from([
+        ("COLORED", plan.colored.into()),
         ("TEXTURED", plan.textured.into()),
         ("LOOP_BUDGET", plan.loop_turns),
         ("ROUNDS", plan.rounds()),

@@ -116,6 +116,7 @@ fn scene_contents(shot: &Shot) -> Contents {
     let positions = scene.positions_around(shot.origin());
     let positions: Vec<[f32; 3]> = positions.iter().map(|p| p.to_array()).collect();
     let texcoords: Vec<[f32; 2]> = scene.texcoords.iter().map(|t| t.to_array()).collect();
+    let colors: Vec<[f32; 3]> = scene.colors.iter().map(|color| color.to_array()).collect();
     let (surfaces, texels) = surfaces(scene);
     let mut vertex_surfaces = vec![0u32; scene.positions.len()];
     for (triangle, &surface) in scene.triangles.iter().zip(&scene.triangle_materials) {
@@ -133,6 +134,7 @@ fn scene_contents(shot: &Shot) -> Contents {
         ("triangle_casts", bytes(&bits(&scene.casts))),
         ("surfaces", bytes(&surfaces)),
         ("texcoords", bytes(&texcoords)),
+        ("vertex_colors", bytes(&colors)),
         ("vertex_surfaces", bytes(&vertex_surfaces)),
         ("texels", texels),
     ])

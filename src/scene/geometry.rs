@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DVec3, Vec2};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 use gltf::json::{Index, Material, Mesh};
 
 use super::document::{Document, label};
 use super::notes::Notes;
 use super::options::Limits;
 use super::pose::Pose;
-use super::primitive::{Source, note_ignored};
+use super::primitive::Source;
 use crate::Result;
 
 /// [byte] What the loader takes for a triangle with vertices of its own.
@@ -22,6 +22,8 @@ pub(super) struct Geometry {
     pub positions: Vec<DVec3>,
     /// One per position; zero where the material has no texture.
     pub texcoords: Vec<Vec2>,
+    /// One per position; none where no primitive has colours.
+    pub colors: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
     /// One per triangle; None = glTF's default material.
     pub materials: Vec<Option<Index<Material>>>,
@@ -37,6 +39,7 @@ impl Geometry {
         Self {
             positions: Vec::new(),
             texcoords: Vec::new(),
+            colors: Vec::new(),
             triangles: Vec::new(),
             materials: Vec::new(),
             casts: Vec::new(),
@@ -90,7 +93,6 @@ impl Geometry {
         spend(&mut self.primitives_left, count, "primitives")?;
         document.spend(count as u64 * PRIMITIVE_BYTES, &name)?;
         for primitive in &json.primitives {
-            note_ignored(primitive, &name, notes);
             let Some(source) = Source::open(document, primitive, pose, &name, notes)? else {
                 continue;
             };
@@ -137,6 +139,7 @@ impl Geometry {
                         let new = self.positions.len() as u32;
                         self.positions.push(points[i]);
                         self.texcoords.push(source.texcoord(document, corners[i])?);
+                        self.paint(new, source.color(document, corners[i])?);
                         renumbered.insert(corners[i], new);
                         new
                     }
@@ -146,6 +149,16 @@ impl Geometry {
             self.materials.push(material);
         }
         Ok(())
+    }
+}
+
+impl Geometry {
+    /// Gives a vertex its colour, if any vertex has one: those without are white.
+    fn paint(&mut self, vertex: u32, color: Option<Vec3>) {
+        if color.is_some() || !self.colors.is_empty() {
+            self.colors.resize(vertex as usize, Vec3::ONE);
+            self.colors.push(color.unwrap_or(Vec3::ONE));
+        }
     }
 }
 

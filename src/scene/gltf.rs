@@ -104,6 +104,7 @@ fn assemble<'a>(
             true => Vec::new(),
             false => geometry.texcoords,
         },
+        colors: geometry.colors,
         triangles: sorted.triangles,
         triangle_materials: sorted.materials,
         opaque_count: sorted.opaque_count,

@@ -1,6 +1,6 @@
 //! One primitive of a mesh, opened for reading: its triangles, and where their vertices stand in a pose.
 
-use glam::{DAffine3, DVec3, Vec2};
+use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -47,6 +47,8 @@ pub(super) struct Source<'a> {
     joints: &'a [DAffine3],
     indices: Option<Accessor<'a>>,
     texcoords: Option<(Accessor<'a>, TextureUse)>,
+    /// With whether they have alpha.
+    colors: Option<(Accessor<'a>, bool)>,
 }
 
 /// How an accessor is opened that is not compressed.
@@ -110,6 +112,23 @@ impl<'a, 'd> Attributes<'a, 'd, '_> {
             None => open(self.document, index, shape, components, &user),
         }
         .map(Some)
+    }
+
+    /// Colours of vertices, and whether they have alpha, which shadows do not ask for.
+    fn colors(&self, notes: &mut Notes) -> Result<Option<(Accessor<'a>, bool)>> {
+        let semantic = Semantic::Colors(0);
+        let declared = &self.primitive.attributes;
+        let Some(&index) = declared.get(&Checked::Valid(semantic.clone())) else {
+            return Ok(None);
+        };
+        let json = self.document.get(index, "accessor", self.name)?;
+        let has_alpha = json.type_ == Checked::Valid(Type::Vec4);
+        if has_alpha {
+            notes.add("the alpha of vertex colours is ignored", self.name);
+        }
+        let shape = if has_alpha { Type::Vec4 } else { Type::Vec3 };
+        let colors = self.numbers(semantic, shape, &SHARES)?;
+        Ok(colors.map(|colors| (colors, has_alpha)))
     }
 
     fn indices(&self) -> Result<Option<Accessor<'a>>> {
@@ -199,6 +218,7 @@ impl<'a> Source<'a> {
             joints: &pose.joints,
             indices,
             texcoords,
+            colors: attributes.colors(notes)?,
         }))
     }
 
@@ -300,6 +320,26 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// [0, 1] Linear RGB of a vertex. None: the primitive has no colours.
+    pub fn color(&self, document: &Document, vertex: usize) -> Result<Option<Vec3>> {
+        let Some((accessor, has_alpha)) = &self.colors else {
+            return Ok(None);
+        };
+        if vertex >= accessor.count {
+            return Err(document.error(format!(
+                "{}: vertex {vertex} has no colour, there are only {}",
+                self.name, accessor.count
+            )));
+        }
+        let color = match has_alpha {
+            true => Vec4::from_array(accessor.floats(vertex)).truncate(),
+            false => Vec3::from_array(accessor.floats(vertex)),
+        };
+        // Written so that NaN becomes black.
+        let share = |value: f32| if value > 0.0 { value.min(1.0) } else { 0.0 };
+        Ok(Some(Vec3::from(color.to_array().map(share))))
+    }
+
     pub fn texcoord(&self, document: &Document, vertex: usize) -> Result<Vec2> {
         let Some((accessor, texture)) = &self.texcoords else {
             return Ok(Vec2::ZERO);
@@ -319,15 +359,5 @@ impl<'a> Source<'a> {
                 self.name
             )))
         }
-    }
-}
-
-/// Notes what of a primitive is not read.
-pub(super) fn note_ignored(primitive: &Primitive, name: &str, notes: &mut Notes) {
-    if primitive
-        .attributes
-        .contains_key(&Checked::Valid(Semantic::Colors(0)))
-    {
-        notes.add("vertex colours are ignored", name);
     }
 }

@@ -17,6 +17,8 @@ pub struct Triangles {
     pub positions: Vec<Vec3>,
     /// [texture widths, heights] One per position, or none.
     pub texcoords: Vec<Vec2>,
+    /// [0, 1] Linear RGB, one per position, or none.
+    pub colors: Vec<Vec3>,
     /// Three positions per triangle, counter-clockwise seen from the front.
     pub indices: Vec<[u32; 3]>,
     /// One per triangle: index into `materials`.
@@ -58,6 +60,7 @@ impl Scene {
                 true => Vec::new(),
                 false => given.texcoords,
             },
+            colors: given.colors,
             triangles: sorted.triangles,
             triangle_materials: sorted.materials,
             opaque_count: sorted.opaque_count,
@@ -121,6 +124,19 @@ impl Triangles {
             return Err(format!(
                 "{vertices} vertices have {texcoords} texture coordinates"
             ));
+        }
+        let colors = self.colors.len();
+        if colors != vertices && colors > 0 {
+            return Err(format!("{vertices} vertices have {colors} colours"));
+        }
+        let shares = |color: &Vec3| {
+            color
+                .to_array()
+                .iter()
+                .all(|share| (0.0..=1.0).contains(share))
+        };
+        if !self.colors.iter().all(shares) {
+            return Err("a vertex's colour is not from 0 to 1".into());
         }
         if !self.texcoords.iter().all(|texcoord| texcoord.is_finite()) {
             return Err("a texture coordinate is not finite".into());

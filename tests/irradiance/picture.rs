@@ -215,3 +215,43 @@ fn intensity_does_not_end_with_the_area() {
     assert_eq!(intensity(given(3.0, 0.0)), 3.0);
     assert_eq!(intensity(given(f32::MAX, 1e10)), f32::MAX);
 }
+
+/// Colours of vertices are interpolated, and multiply the material's.
+#[test]
+fn colours_of_vertices_are_those_of_surfaces() {
+    let mut scene = (*stage()).clone();
+    scene.materials[0].base_color = glam::Vec4::new(1.0, 0.5, 1.0, 1.0);
+    scene.colors = (scene.positions.iter())
+        .map(|place| Vec3::new(0.25, 0.5 + 0.1 * place.z as f32, 0.0))
+        .collect();
+    let shot = shot_of(Arc::new(scene), above([0.1; 2], true));
+    with_gpu(|gpu| {
+        let options = RenderOptions {
+            outputs: Outputs { picture: true },
+            costs: DEFAULT_COSTS,
+            exposure: DEFAULT_EXPOSURE,
+        };
+        let mut renderer = Renderer::new(gpu, &shot, options).expect("a renderer");
+        renderer.render().expect("a frame");
+        let pixels = (SIDE * SIDE) as usize;
+        let places: Vec<[f32; 4]> = renderer
+            .read_image("position_world", pixels)
+            .expect("positions");
+        let found: Vec<[u8; 4]> = renderer.read_image("albedo", pixels).expect("albedo");
+        let eye = shot.origin();
+        let mut count = 0;
+        for (place, found) in places.iter().zip(found).filter(|(place, _)| place[3] > 0.0) {
+            let z = f64::from(place[2]) + eye.z;
+            let wanted = [0.25, 0.5 * (0.5 + 0.1 * z), 0.0];
+            for (found, wanted) in found.into_iter().zip(wanted) {
+                // Half a step of 8 bits, and what interpolation rounds.
+                assert!(
+                    (f64::from(found) - 255.0 * wanted).abs() < 0.6,
+                    "{found} for {wanted} at {z}"
+                );
+            }
+            count += 1;
+        }
+        assert!(count > 1000, "{count}");
+    });
+}
