@@ -191,6 +191,14 @@ fn textures_that_cannot_be_read() {
             json!({"uri": "data:image/gif;base64,R0lGODlhAQABAAAAACw="}),
             "not in PNG, JPEG or WebP",
         ),
+        (
+            json!({"uri": inline(b"\xabKTX 20\xbb\r\n\x1a\n")}),
+            "image 0: is in KTX2; `gltf-transform ktxdecompress`",
+        ),
+        (
+            json!({"uri": inline(b"\0\0\0\x1cftypavif\0\0\0\0")}),
+            "image 0: is in AVIF",
+        ),
         (json!({"uri": cut}), "cannot be decoded"),
     ] {
         let scene = surface(image.clone(), json!({})).load().unwrap();
@@ -217,6 +225,75 @@ fn textures_that_cannot_be_read() {
         .load()
         .unwrap();
     assert_eq!(scene.textures.len(), 1, "{:?}", scene.notes);
+}
+
+#[test]
+fn textures_whose_only_image_is_an_extensions() {
+    let load = |texture: Value, mode| {
+        let image = png(1, 1, &[[9, 8, 7, 0]]);
+        let uri = format!("data:;base64,{}", STANDARD.encode(image));
+        let mut gltf = surface(json!({"uri": uri}), json!({"alphaMode": mode}));
+        gltf.json["textures"][0] = texture;
+        gltf
+    };
+    let basis = json!({"KHR_texture_basisu": {"source": 0}});
+    let alone = json!({"name": "wood", "extensions": basis});
+    let advice = "texture 0 (\"wood\"): is in KTX2; `gltf-transform ktxdecompress`";
+    let scene = load(alone.clone(), "OPAQUE").load().unwrap();
+    assert!(noted(&scene, advice), "{:?}", scene.notes);
+    let message = load(alone, "MASK").error();
+    assert!(
+        message.contains(advice) && message.contains("--allow-missing"),
+        "{message}"
+    );
+    let scene = load(json!({"source": 0, "extensions": basis}), "MASK")
+        .load()
+        .unwrap();
+    assert_eq!(scene.textures.len(), 1, "{:?}", scene.notes);
+}
+
+/// A row of two texels, out of a palette of as many colours.
+fn palette_png(colors: [[u8; 3]; 2], alphas: [u8; 2]) -> Vec<u8> {
+    let chunk = |kind: &[u8; 4], data: &[u8]| {
+        let body = [&kind[..], data].concat();
+        let checksum = crc32fast::hash(&body).to_be_bytes();
+        [&(data.len() as u32).to_be_bytes(), &body[..], &checksum].concat()
+    };
+    // No filter, and the texels; stored, not deflated; with the checksum of zlib.
+    let row = [0, 0, 1];
+    let (low, high) = row.iter().fold((1, 0), |(low, high), &byte| {
+        (low + u32::from(byte), high + low + u32::from(byte))
+    });
+    let stored = [0x78, 1, 1, 3, 0, !3, !0];
+    let zlib = [&stored[..], &row, &(high << 16 | low).to_be_bytes()].concat();
+    [
+        b"\x89PNG\r\n\x1a\n".to_vec(),
+        chunk(b"IHDR", &[0, 0, 0, 2, 0, 0, 0, 1, 8, 3, 0, 0, 0]),
+        chunk(b"PLTE", colors.as_flattened()),
+        chunk(b"tRNS", &alphas),
+        chunk(b"IDAT", &zlib),
+        chunk(b"IEND", &[]),
+    ]
+    .concat()
+}
+
+#[test]
+fn textures_of_other_depths() {
+    let texels = |picture: &[u8]| {
+        let uri = format!("data:image/png;base64,{}", STANDARD.encode(picture));
+        let scene = surface(json!({"uri": uri}), json!({"alphaMode": "MASK"}))
+            .load()
+            .unwrap();
+        assert!(scene.materials[0].alpha_cutoff.is_some());
+        scene.textures[0].rgba.clone()
+    };
+    let palette = palette_png([[200, 100, 50], [10, 20, 30]], [255, 3]);
+    assert_eq!(texels(&palette), [200, 100, 50, 255, 10, 20, 30, 3]);
+    let deep = vec![0xffff, 200 * 257 + 128, 50 * 257 - 128, 3 * 257];
+    let deep = image::ImageBuffer::<image::Rgba<u16>, _>::from_raw(1, 1, deep).unwrap();
+    let mut file = std::io::Cursor::new(Vec::new());
+    deep.write_to(&mut file, image::ImageFormat::Png).unwrap();
+    assert_eq!(texels(&file.into_inner()), [255, 200, 50, 3]);
 }
 
 #[test]

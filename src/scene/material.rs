@@ -11,6 +11,7 @@ use gltf::json::{Image, Index, Material as MaterialJson, Texture as TextureJson}
 use image::{ImageFormat, ImageReader};
 
 use super::document::{Document, label};
+use super::extensions::{unread_image, unread_texture};
 use super::notes::Notes;
 use super::options::{Blend, LoadOptions};
 use super::{Material, Texture, Wrap};
@@ -77,6 +78,13 @@ fn image_of(texture: &TextureJson) -> Option<Index<Image>> {
         // An extension for other formats may leave the standard's own source empty.
         None => (texture.source.value() != u32::MAX as usize).then_some(texture.source),
     }
+}
+
+/// What a texture is that has no image to read.
+fn without_image(texture: &TextureJson) -> &'static str {
+    let extensions = texture.extensions.iter();
+    let names = extensions.flat_map(|extensions| extensions.others.keys());
+    unread_texture(names).unwrap_or("has no image in PNG, JPEG or WebP")
 }
 
 /// What becomes of the triangles of a material.
@@ -286,8 +294,10 @@ impl<'a> Materials<'a> {
             (Some(filter), _) => filter != Checked::Valid(MagFilter::Nearest),
             (None, filter) => filter != Some(Checked::Valid(MinFilter::Nearest)),
         };
-        let source = image_of(texture)
-            .ok_or_else(|| document.error("its texture has no image in PNG, JPEG or WebP"))?;
+        let source = image_of(texture).ok_or_else(|| {
+            let label = label("texture", info.index.value(), texture.name.as_deref());
+            document.error(format!("{label}: {}", without_image(texture)))
+        })?;
         let key = (source.value(), wrap.map(|wrap| wrap as u32), linear);
         if let Some(&known) = self.loaded.get(&key) {
             return Ok(known);
@@ -330,9 +340,10 @@ impl<'a> Materials<'a> {
         };
         let format = match image::guess_format(bytes) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
-            _ => Err(self
-                .document
-                .error(format!("{name}: is not in PNG, JPEG or WebP")))?,
+            _ => {
+                let what = unread_image(bytes).unwrap_or("is not in PNG, JPEG or WebP");
+                Err(self.document.error(format!("{name}: {what}")))?
+            }
         };
         let reader = || ImageReader::with_format(Cursor::new(bytes), format);
         let (width, height) = reader().into_dimensions().map_err(broken)?;
