@@ -9,7 +9,7 @@ use halfshade::technique::{Settings, Technique};
 use super::support::with_gpu;
 
 /// The cases that are tried here: one for each way in which numbers get large, small or equal.
-const CASES: [&str; 14] = [
+const CASES: [&str; 19] = [
     "plate 1e-7 of the light's height above the ground",
     "plate 1e-7 of the light's height below the light",
     "slats 0.01 below the light, turned by 0",
@@ -21,6 +21,11 @@ const CASES: [&str; 14] = [
     "light without area",
     "light of half width 5e1",
     "aspect 1:10000",
+    "sphere that touches the ground",
+    "sphere around everything",
+    "sun of 0.000001 degrees",
+    "sun of 179 degrees",
+    "sun of 0.1 degrees 89.9 degrees from upright",
     "1e6 away along x",
     "triangles without area",
     "image of 1x1",

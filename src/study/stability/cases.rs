@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::stage::{Case, MAP, Stage, rotated};
+use super::stage::{Case, Kind, MAP, Stage, rotated};
 use crate::scene::Shape;
 
 /// All cases. `large`: those as well that take a CPU driver minutes.
@@ -10,6 +10,8 @@ pub fn cases(large: bool) -> Vec<Case> {
     let mut all = contacts();
     all.extend(near_the_light());
     all.extend(lights());
+    all.extend(spheres());
+    all.extend(suns());
     all.extend(places());
     all.extend(grazing());
     all.extend(edges());
@@ -130,14 +132,14 @@ fn lights() -> Vec<Case> {
     let mut all = Vec::new();
     for power in -6..=3 {
         let half = 0.5 * 10f64.powi(power);
-        let stage = |round| Stage {
+        let stage = |light_shape| Stage {
             light_half: (half, half),
-            round,
+            light_shape,
             ..Stage::default()
         };
-        all.push(stage(false).case("light's size", format!("light of half width {half:.0e}")));
+        all.push(stage(Kind::Rect).case("light's size", format!("light of half width {half:.0e}")));
         if power % 3 == 0 {
-            all.push(stage(true).case("light's size", format!("disc of radius {half:.0e}")));
+            all.push(stage(Kind::Disc).case("light's size", format!("disc of radius {half:.0e}")));
         }
     }
     for power in 1..=4 {
@@ -156,6 +158,62 @@ fn lights() -> Vec<Case> {
     };
     all.push(point.case("light's size", "light without area"));
     all
+}
+
+/// Spheres that touch, cut and surround what they shine on.
+fn spheres() -> Vec<Case> {
+    let sphere = |radius: f64, height: f64| Stage {
+        light_shape: Kind::Sphere,
+        light_half: (radius, radius),
+        light_height: height,
+        ..Stage::default()
+    };
+    let beside = |radius: f64, height: f64| Stage {
+        plate_aside: 0.9,
+        plate_height: 0.3,
+        ..sphere(radius, height)
+    };
+    vec![
+        sphere(1e-6, 2.0).case("sphere", "sphere of radius 1e-6"),
+        sphere(1.0, 2.0).case("sphere", "sphere that touches the plate"),
+        sphere(1.3, 2.0).case("sphere", "sphere that the plate is in"),
+        beside(0.5, 0.5 + 1e-6).case("sphere", "sphere 1e-6 above the ground"),
+        beside(0.5, 0.5).case("sphere", "sphere that touches the ground"),
+        beside(0.5, 0.2).case("sphere", "sphere that the ground cuts"),
+        sphere(20.0, 2.0).case("sphere", "sphere around everything"),
+        sphere(1e3, 1002.0).case("sphere", "sphere of radius 1e3"),
+    ]
+}
+
+/// Suns from a point to half of the sky, and down to the horizon, where a wall casts the shadow.
+fn suns() -> Vec<Case> {
+    let sun = |angle_deg: f64, light_tilt: f64| Stage {
+        light_shape: Kind::Sun { angle_deg },
+        light_tilt,
+        ..Stage::default()
+    };
+    let low = |angle_deg: f64, light_tilt: f64| Stage {
+        plate_height: 0.0,
+        plate_turn: 0.0,
+        plate_tilt: 90.0,
+        ..sun(angle_deg, light_tilt)
+    };
+    let high = [0.0, 1e-6, 0.533, 90.0, 179.0]
+        .map(|angle| sun(angle, 30.0).case("sun", format!("sun of {angle} degrees")));
+    let tilts = [
+        (0.533, 60.0),
+        (0.533, 89.0),
+        (0.1, 89.9),
+        (0.533, 89.9),
+        (90.0, 89.9),
+        (0.533, 90.0),
+        (0.533, 120.0),
+    ];
+    let sinking = tilts.map(|(angle, tilt)| {
+        let name = format!("sun of {angle} degrees {tilt} degrees from upright");
+        low(angle, tilt).case("sun", name)
+    });
+    high.into_iter().chain(sinking).collect()
 }
 
 /// Small and large scenes, far from the origin, and with a large range of depths.

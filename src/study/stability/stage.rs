@@ -48,6 +48,15 @@ impl Case {
     }
 }
 
+/// What the light is. `light_half` says its half width, radius or half sizes; a sun has an angle instead.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kind {
+    Rect,
+    Disc,
+    Sphere,
+    Sun { angle_deg: f64 },
+}
+
 /// A plate between the ground and a square light, and what a case changes about it. Lengths in [scene units] before `scale`.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
@@ -57,7 +66,7 @@ pub(super) struct Stage {
     pub light_half: (f64, f64),
     /// The light is tilted by so many degrees about z.
     pub light_tilt: f64,
-    pub round: bool,
+    pub light_shape: Kind,
     /// Height of the plate's middle, and what it is turned by about y and tilted by about z, in degrees.
     pub plate_height: f64,
     pub plate_half: f64,
@@ -80,7 +89,7 @@ impl Default for Stage {
             light_height: 2.0,
             light_half: (0.5, 0.5),
             light_tilt: 0.0,
-            round: false,
+            light_shape: Kind::Rect,
             plate_height: 1.0,
             plate_half: 0.4,
             plate_turn: 17.0,
@@ -126,18 +135,7 @@ impl Stage {
         for point in parts.iter_mut().flat_map(|(shape, _)| &mut shape.positions) {
             *point = place(*point);
         }
-        let axis = |axis: DVec3| rotated(axis, DVec3::Z, self.light_tilt) * self.scale;
-        let (half_u, half_v) = self.light_half;
-        let shape = match self.round {
-            true => LightShape::Disc {
-                normal: rotated(-DVec3::Y, DVec3::Z, self.light_tilt),
-                radius: half_u * self.scale,
-            },
-            false => LightShape::Rect {
-                u: axis(DVec3::X) * half_u,
-                v: axis(DVec3::Z) * half_v,
-            },
-        };
+        let shape = self.light();
         let light = AreaLight {
             name: String::new(),
             center: place(DVec3::Y * self.light_height),
@@ -170,6 +168,29 @@ impl Stage {
                 notes: Vec::new(),
             },
             changes: self.changes,
+        }
+    }
+
+    fn light(&self) -> LightShape {
+        let tilted = |axis: DVec3| rotated(axis, DVec3::Z, self.light_tilt);
+        let (half_u, half_v) = (
+            self.light_half.0 * self.scale,
+            self.light_half.1 * self.scale,
+        );
+        match self.light_shape {
+            Kind::Rect => LightShape::Rect {
+                u: tilted(DVec3::X) * half_u,
+                v: tilted(DVec3::Z) * half_v,
+            },
+            Kind::Disc => LightShape::Disc {
+                normal: tilted(DVec3::NEG_Y),
+                radius: half_u,
+            },
+            Kind::Sphere => LightShape::Sphere { radius: half_u },
+            Kind::Sun { angle_deg } => LightShape::Sun {
+                direction: tilted(DVec3::NEG_Y),
+                angle_deg,
+            },
         }
     }
 }
