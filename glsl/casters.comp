@@ -53,12 +53,13 @@ struct Plane {
     vec3 scene_at;
 };
 
-Plane plane_of(View view, vec3 ways[3]) {
+// corner: the first, in the frame of the view's face; ways: to all of them from the light's centre.
+Plane plane_of(View view, vec3 corner, vec3 ways[3]) {
     Plane plane;
     plane.scene_normal = cross(ways[1] - ways[0], ways[2] - ways[0]);
     plane.scene_at = ways[0];
     plane.normal = to_face(view, mapped_normal(view, ways[0], plane.scene_normal));
-    plane.at = to_face(view, mapped(view, ways[0]));
+    plane.at = corner;
     return plane;
 }
 
@@ -158,7 +159,7 @@ void main() {
         vec3 corner[3];
         for (int i = 0; i < 3; ++i) ways[i] = caster_way(view, triangle[i]);
         for (int i = 0; i < 3; ++i) corner[i] = to_face(view, mapped(view, ways[i]));
-        if (!one_sided(plane_of(view, ways), view, light, receivers, in_scene)
+        if (!one_sided(plane_of(view, corner[0], ways), view, light, receivers, in_scene)
             && include_triangle(reach, view, light, slopes, depth_max, corner))
             append(triangle, index >= frame.opaque_count);
     }

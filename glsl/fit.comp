@@ -63,7 +63,7 @@ void main() {
         fit.level_groups[level] = level < fit.level_count ? groups : uvec3(0u);
     }
     // A view that nothing is accumulated into writes every pixel, casters or not.
-    fit.kernel_groups = empty && ACCUMULATE ? uvec3(0u) : uvec3(tiles, 1u);
+    fit.image_groups = empty && ACCUMULATE ? uvec3(0u) : uvec3(tiles, 1u);
     uvec2 packets = (frame.size + uvec2(PACKET_WIDTH, PACKET_HEIGHT) - 1u) / uvec2(PACKET_WIDTH, PACKET_HEIGHT);
     fit.classify_groups = empty ? uvec3(0u) : uvec3((packets + TILE_SIZE - 1u) / TILE_SIZE, 1u);
     fit.opaque_draw[1] = 1u;

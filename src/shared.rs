@@ -278,7 +278,7 @@ shared! {
         level_count: uint,
         /// VkDispatchIndirectCommand of each pass.
         level_groups: uvec3 [LEVELS_MAX as usize],
-        kernel_groups: uvec3,
+        image_groups: uvec3,
         classify_groups: uvec3,
         /// [packet] Traversals that the driver ended before they were finished.
         unfinished: uint,

@@ -125,7 +125,7 @@ pub fn survey(
 ) -> LightCoverage {
     let (scene, origin) = (&*shot.scene, shot.origin());
     let placed = Placed::new(side, origin, touch);
-    let cone = side.cone.map(|cone| Cone::new(cone as usize).distances());
+    let cone = side.cone.map(|cone| Cone::new(cone as usize));
     let mut found = LightCoverage {
         receivers: false,
         receiver_bounds: (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -134,12 +134,12 @@ pub fn survey(
         near: Vec::new(),
         touching: false,
     };
-    let middle = side.cone.map(|cone| Cone::new(cone as usize));
-    if (side.light.beam.as_ref().zip(middle.as_ref()))
-        .is_some_and(|(beam, cone)| !beam.may_meet(cone))
+    if let (Some(beam), Some(cone)) = (&side.light.beam, &cone)
+        && !beam.may_meet(cone)
     {
         return found;
     }
+    let planes = cone.map(|cone| cone.distances());
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for index in 0..scene.triangles.len() {
         let corners = scene.corners_around(origin, index);
@@ -150,10 +150,10 @@ pub fn survey(
         }
         // Inside a sphere nothing is shadowed; what is in it with its corners is in it altogether.
         let outside = |point: &DVec3| point.distance(placed.center) > placed.half.x;
-        if cone.is_some() && !polygon.iter().any(outside) {
+        if planes.is_some() && !polygon.iter().any(outside) {
             polygon.clear();
         }
-        for plane in cone.iter().flatten() {
+        for plane in planes.iter().flatten() {
             clip(&mut polygon, |point| plane.dot(point - placed.center));
         }
         polygon

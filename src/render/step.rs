@@ -130,7 +130,7 @@ impl Recording<'_> {
             Domain::Image => Groups::Direct(tiles(plan.size)),
             Domain::PixelReduction => reduction(plan.size.0 * plan.size.1),
             Domain::TriangleReduction => reduction(triangles),
-            Domain::Pixels => return found(offset_of!(Fit, kernel_groups)),
+            Domain::Pixels => return found(offset_of!(Fit, image_groups)),
             Domain::Tiles => {
                 let count: u32 = tiles(plan.size).iter().product();
                 listed(count.div_ceil(GROUP_SIZE))
