@@ -5,6 +5,7 @@
 // side of its plane, or when it lies outside the region of the lines between them. No caster is left out, whatever rounding
 // does; the bounds hold all that is kept of triangles inside the region.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "bounds.glsl"
 #include "receiver.glsl"
 #include "caster_region.glsl"
@@ -18,6 +19,8 @@ readonly BUFFER(views);
 BUFFER(fits);
 readonly BUFFER(triangles);
 writeonly BUFFER(caster_indices);
+
+#include "caster_list.glsl"
 
 // Upper bounds of one invocation's casters; see `Fit`.
 struct Reach {
@@ -135,15 +138,15 @@ bool include_triangle(inout Reach reach, View view, Box light, vec4 slopes, floa
 }
 
 void append(uvec3 triangle, bool masked) {
-    uint at = masked ? 3u * frame.opaque_count + atomicAdd(fits[push.index].masked_draw[0], 3u)
-                     : atomicAdd(fits[push.index].opaque_draw[0], 3u);
+    uint at = masked ? first_masked_index(view_index()) + atomicAdd(fits[view_index()].masked_draw[0], 3u)
+                     : first_opaque_index(view_index()) + atomicAdd(fits[view_index()].opaque_draw[0], 3u);
     for (uint i = 0u; i < 3u; ++i) caster_indices[at + i] = triangle[i];
 }
 
 void main() {
-    Fit fit = fits[push.index];
+    Fit fit = fits[view_index()];
     if (fit.receiver_count == 0u) return;
-    View view = views[push.index];
+    View view = views[view_index()];
     Box light = box_of_light(view);
     Box receivers = box_of(fit.receiver_bounds);
     Box in_scene = box_of(fit.receiver_box);
@@ -166,6 +169,6 @@ void main() {
     vec4 tangents = subgroupMax(reach.tangents);
     float negated_near = subgroupMax(reach.negated_near);
     if (negated_near == NONE || !subgroupElect()) return;
-    for (int i = 0; i < 4; ++i) atomicMax(fits[push.index].caster_bounds[i], bound_of(tangents[i]));
-    atomicMax(fits[push.index].caster_bounds[4], bound_of(negated_near));
+    for (int i = 0; i < 4; ++i) atomicMax(fits[view_index()].caster_bounds[i], bound_of(tangents[i]));
+    atomicMax(fits[view_index()].caster_bounds[4], bound_of(negated_near));
 }

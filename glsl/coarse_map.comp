@@ -9,13 +9,13 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 BUFFER(coarse_map);
 
 vec2 texel_below(ivec2 texel, int level, uint map_size) {
     int side = level > 0 ? coarse_side(level, map_size) : int(map_size);
     if (any(greaterThanEqual(texel, ivec2(side)))) return vec2(0.0);
-    if (level == 0) return texelFetch(shadow_map, texel, 0).xx;
+    if (level == 0) return vec2(sample_of(push.index, texel));
     return coarse_map[coarse_index(texel, level, map_size)];
 }
 

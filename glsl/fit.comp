@@ -3,6 +3,7 @@
 // Fits a view's projection to the bounds of its casters and writes the work that is left for its passes: levels, groups,
 // draws (algorithm.md §10). No contour touches the map's border. One invocation.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "bounds.glsl"
 #include "quadtree.glsl"
 #include "hierarchy_layout.glsl"
@@ -14,6 +15,9 @@ readonly BUFFER(frame);
 readonly BUFFER(views);
 BUFFER(fits);
 readonly BUFFER(givens);
+BUFFER(hierarchy_groups);
+
+#include "caster_list.glsl"
 
 // Extent of one axis at most this many times the other's: kernels stay near to square.
 const float ASPECT_MAX = 8.0;
@@ -28,15 +32,22 @@ vec2 largest_kernel(View view, Fit fit) {
     return (view.extent.zw - view.extent.xy) * (max(1.0 - depth_min, 0.0) / kappa);
 }
 
+// A level that a view needs is built for all that are side by side; those that do not need it leave it out.
+void reach_level(uint level, uint groups) {
+    atomicMax(hierarchy_groups[push.index].of_level[level].x, groups);
+    atomicMax(hierarchy_groups[push.index].of_level[level].y, groups);
+    atomicMax(hierarchy_groups[push.index].of_level[level].z, gl_NumWorkGroups.z);
+}
+
 void main() {
-    Fit fit = fits[push.index];
-    View view = views[push.index];
+    Fit fit = fits[view_index()];
+    View view = views[view_index()];
     uvec2 tiles = (frame.size + TILE_SIZE - 1u) / TILE_SIZE;
     bool empty = GIVEN_MAPS ? fit.receiver_count == 0u : fit.caster_bounds[4] == 0u;
     if (GIVEN_MAPS) {
-        fit.near = givens[push.index].near;
-        fit.focal = givens[push.index].focal;
-        fit.center = givens[push.index].center;
+        fit.near = givens[view_index()].near;
+        fit.focal = givens[view_index()].focal;
+        fit.center = givens[view_index()].center;
     } else if (!empty) {
         vec2 upper = vec2(value_of(fit.caster_bounds[0], 0.0), value_of(fit.caster_bounds[1], 0.0));
         vec2 lower = -vec2(value_of(fit.caster_bounds[2], 0.0), value_of(fit.caster_bounds[3], 0.0));
@@ -50,7 +61,7 @@ void main() {
     }
     if (!empty) {
         float side = float(view.map_size);
-        if (!OBLIQUE) {
+        if (view.face == 0u && !GIVEN_MAPS) {
             vec2 largest = min(largest_kernel(view, fit), vec2(side));
             side = max(largest.x, largest.y) + 2.0;
         }
@@ -59,15 +70,15 @@ void main() {
     }
     for (uint level = 0u; level < LEVELS_MAX; ++level) {
         uint nodes = uint(covered_side(view) >> spacing_log2(int(level)));
-        uvec3 groups = uvec3(uvec2((nodes + TILE_SIZE - 1u) / TILE_SIZE), 1u);
-        fit.level_groups[level] = level < fit.level_count ? groups : uvec3(0u);
+        if (level < fit.level_count) reach_level(level, (nodes + TILE_SIZE - 1u) / TILE_SIZE);
     }
     // A view that nothing is accumulated into writes every pixel, casters or not.
     fit.image_groups = empty && ACCUMULATE ? uvec3(0u) : uvec3(tiles, 1u);
     uvec2 packets = (frame.size + uvec2(PACKET_WIDTH, PACKET_HEIGHT) - 1u) / uvec2(PACKET_WIDTH, PACKET_HEIGHT);
     fit.classify_groups = empty ? uvec3(0u) : uvec3((packets + TILE_SIZE - 1u) / TILE_SIZE, 1u);
     fit.opaque_draw[1] = 1u;
+    fit.opaque_draw[2] = first_opaque_index(view_index());
     fit.masked_draw[1] = 1u;
-    fit.masked_draw[2] = 3u * frame.opaque_count;
-    fits[push.index] = fit;
+    fit.masked_draw[2] = first_masked_index(view_index());
+    fits[view_index()] = fit;
 }

@@ -22,7 +22,7 @@ readonly BUFFER(tiles);
 writeonly BUFFER(kernels);
 writeonly BUFFER(quality);
 BUFFER(counters);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 #include "surface.glsl"
 #include "window.glsl"
 #include "rounds.glsl"
@@ -42,7 +42,7 @@ bool nothing_occludes(Receiver receiver, Cells cells) {
     uint occluding = 0u;
     for (int y = cells.first.y; y <= cells.last.y + 1; ++y)
         for (int x = cells.first.x; x <= cells.last.x + 1; ++x)
-            occluding += uint(occludes(receiver, vec2(x, y), texelFetch(shadow_map, ivec2(x, y), 0).x));
+            occluding += uint(occludes(receiver, vec2(x, y), sample_of(push.index, ivec2(x, y))));
     return occluding == 0u;
 }
 

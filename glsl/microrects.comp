@@ -14,7 +14,7 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 
 // [texel] Of the map, first and last; depth 0: nothing.
 struct Rect {
@@ -28,7 +28,7 @@ Rect rect_at(ivec2 at, int level, uint map_size) {
     Rect rect = Rect(0.0, at << level, at << level);
     if (any(greaterThanEqual(uvec2(at), uvec2(side)))) return rect;
     if (level == 0) {
-        rect.depth = texelFetch(shadow_map, at, 0).x;
+        rect.depth = sample_of(push.index, at);
         return rect;
     }
     Microrect found = microrects[coarse_index(at, level, map_size)];

@@ -3,6 +3,7 @@
 // Bounds of the visible receivers that a view has to look at (algorithm.md §10): their boxes in the face's frame and in the scene's,
 // and the slopes of the four planes that enclose every line from them to the sub-light. The order of reduction does not matter.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "bounds.glsl"
 #include "receiver.glsl"
 #include "caster_region.glsl"
@@ -38,7 +39,7 @@ void include(inout Reach reach, View view, Box light, vec3 position) {
 }
 
 void main() {
-    View view = views[push.index];
+    View view = views[view_index()];
     Box light = box_of_light(view);
     Reach reach = Reach(vec3(NONE), vec3(NONE), vec3(NONE), vec3(NONE), vec4(NONE), 0u);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
@@ -54,12 +55,12 @@ void main() {
     vec3 box_negated_lower = subgroupMax(reach.box_negated_lower);
     vec4 slopes = subgroupMax(reach.slopes);
     if (count == 0u || !subgroupElect()) return;
-    atomicAdd(fits[push.index].receiver_count, count);
+    atomicAdd(fits[view_index()].receiver_count, count);
     for (int i = 0; i < 3; ++i) {
-        atomicMax(fits[push.index].receiver_bounds[i], bound_of(upper[i]));
-        atomicMax(fits[push.index].receiver_bounds[i + 3], bound_of(negated_lower[i]));
-        atomicMax(fits[push.index].receiver_box[i], bound_of(box_upper[i]));
-        atomicMax(fits[push.index].receiver_box[i + 3], bound_of(box_negated_lower[i]));
+        atomicMax(fits[view_index()].receiver_bounds[i], bound_of(upper[i]));
+        atomicMax(fits[view_index()].receiver_bounds[i + 3], bound_of(negated_lower[i]));
+        atomicMax(fits[view_index()].receiver_box[i], bound_of(box_upper[i]));
+        atomicMax(fits[view_index()].receiver_box[i + 3], bound_of(box_negated_lower[i]));
     }
-    for (int i = 0; i < 4; ++i) atomicMax(fits[push.index].receiver_slopes[i], bound_of(slopes[i]));
+    for (int i = 0; i < 4; ++i) atomicMax(fits[view_index()].receiver_slopes[i], bound_of(slopes[i]));
 }

@@ -25,7 +25,7 @@ mod validation;
 pub use commands::{Commands, Groups};
 pub use cost::Cost;
 pub use device::{Gpu, Options};
-pub use draw::{Attachments, Draw, MAX_COLORS};
+pub use draw::{Attachments, Draw, MAX_COLORS, Rendering};
 pub use host::{HostBuffer, HostImage, HostImageInfo, ImageState, Loan};
 pub use host_device::{Enabled, HostDevice};
 pub use memory::{Buffer, Image, ImageKind, SAMPLES};

@@ -12,6 +12,7 @@ mod memory;
 mod notes;
 mod omissions;
 mod patches;
+mod side_by_side;
 mod survey;
 mod text;
 mod views;
@@ -59,6 +60,8 @@ pub struct Plan {
     pub density: Density,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
+    /// Views of a set whose maps are made side by side, at most.
+    pub views_at_once: u32,
     /// [turn] After which the driver ends loops.
     pub loop_turns: u32,
     /// [pixel] Width and height of a packet.
@@ -131,9 +134,10 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
         (Draft::new(&shot.settings, placed, parts, &found), found)
     };
     let (drafts, found): (Vec<_>, Vec<_>) = shot.lights.iter().map(cover).unzip();
-    plan.add_lights(drafts, &shot.settings, limits)?;
+    let inventory = Inventory::of(&shot.scene);
+    plan.add_lights(drafts, &shot.settings, inventory.triangles, limits)?;
     plan.note_lights(shot, &found);
-    plan.list_resources(&Inventory::of(&shot.scene));
+    plan.size_resources(&inventory, &shot.settings, limits);
     plan.list_omissions(shot);
     plan.check(limits)?;
     Ok(plan)
@@ -183,14 +187,16 @@ impl Plan {
         sets.flat_map(|set| &mut set.views)
     }
 
-    /// Sizes the maps for the lights, gives them their views, and puts their passes in order.
+    /// Sizes the maps for the lights, gives them their views, and puts their passes in order. `triangles`: that may cast shadows.
     fn add_lights(
         &mut self,
         drafts: Vec<Draft>,
         settings: &Settings,
+        triangles: u64,
         limits: &Limits,
     ) -> Result<()> {
         self.size_map(&drafts, settings, limits)?;
+        self.choose_views_at_once(&drafts, settings, triangles, limits);
         let mut numbering = Numbering::default();
         for (index, draft) in drafts.into_iter().enumerate() {
             let light = draft.finish(index, self.levels, &mut numbering);
@@ -223,6 +229,7 @@ impl Plan {
             bounds_bits: settings.mssm_bits,
             density: settings.hierarchy.density(settings.map),
             map: 0,
+            views_at_once: 1,
             loop_turns: limits.loop_turns,
             packet: settings.window(),
             budget: Budget::new(settings),

@@ -4,6 +4,7 @@ mod chain;
 mod constants;
 mod costs;
 mod counts;
+mod draw;
 mod effect;
 mod notes;
 mod pipelines;
@@ -187,7 +188,7 @@ impl Renderer {
     /// `only`: the view to which the frame is limited.
     fn record(&mut self, only: Option<u32>) -> Result<()> {
         let in_view = |step: &Step| match (only, step.scope) {
-            (Some(only), Scope::View(view)) => view == only,
+            (Some(only), scope @ Scope::Views { .. }) => scope.has_view(only),
             _ => true,
         };
         self.record_steps(in_view)
@@ -223,6 +224,20 @@ impl Renderer {
         self.read_back(name, image.bytes(), count, |commands, target| {
             commands.copy_image("readback", image, target)
         })
+    }
+
+    /// The same of an image that has layers for each of the views that are made at once, after [`Self::render_view`]: `count` values of
+    /// that view's.
+    pub fn read_image_of_view<T: bytemuck::Pod>(
+        &self,
+        name: &str,
+        view: u32,
+        count: usize,
+    ) -> Result<Vec<T>> {
+        let views_at_once = self.fresh.views_at_once;
+        let mut all = self.read_image(name, count * views_at_once as usize)?;
+        let first = (view % views_at_once) as usize * count;
+        Ok(all.drain(first..first + count).collect())
     }
 
     /// Copies `bytes` into memory that the host can read, waits, and reads `count` values.

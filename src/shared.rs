@@ -277,11 +277,16 @@ shared! {
         /// [level] Number of the hierarchy's levels; 0 = no casters.
         level_count: uint,
         /// VkDispatchIndirectCommand of each pass.
-        level_groups: uvec3 [LEVELS_MAX as usize],
         image_groups: uvec3,
         classify_groups: uvec3,
         /// [packet] Traversals that the driver ended before they were finished.
         unfinished: uint,
+    }
+
+    /// The dispatches that build the hierarchies of views side by side, kept for the first of them. All zero at the start of a frame.
+    struct HierarchyGroups {
+        /// VkDispatchIndirectCommand of each level.
+        of_level: uvec3 [LEVELS_MAX as usize],
     }
 
     /// Bounds of the visible surface in a tile of the image.

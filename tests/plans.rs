@@ -20,6 +20,7 @@ const LIMITS: Limits = Limits {
     allowed_bytes: u64::MAX,
     storage_alignment: 16,
     adds_floats: true,
+    is_cpu: true,
     loop_turns: 60000,
 };
 

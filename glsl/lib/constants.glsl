@@ -13,5 +13,6 @@ layout(constant_id = 9) const bool TEXTURED = false;      // the scene has textu
 layout(constant_id = 11) const uint LOOP_BUDGET = 60000u; // [turn] of loops that the driver allows an invocation
 layout(constant_id = 12) const uint ROUNDS = 1u;          // [dispatch] in which a list is worked off
 layout(constant_id = 13) const uint LAYERS = 1u;          // peeled layers of the shadow map
+layout(constant_id = 67) const uint VIEWS_AT_ONCE = 1u;   // [slot] for maps that are made side by side
 layout(constant_id = 49) const uint QUALITY = 0u;         // which of a pixel's two levels of quality is added: a QUALITY_…
 layout(constant_id = 16) const bool CONTOURS = false;     // occluders are contours, not micropatches

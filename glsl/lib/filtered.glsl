@@ -10,7 +10,7 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 readonly BUFFER(frame);
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 
 #include "surface.glsl"
 
@@ -24,7 +24,7 @@ uint samples_read_by_pixel();
 float nearest_depth(View view, vec2 t) {
     ivec2 texel = ivec2(floor(clamp(t, vec2(-2.0), vec2(view.map_size + 1u)) + 0.5));
     if (any(greaterThanEqual(uvec2(texel), uvec2(view.map_size)))) return 0.0;
-    return texelFetch(shadow_map, texel, 0).x;
+    return sample_of(push.index, texel);
 }
 
 void main() {

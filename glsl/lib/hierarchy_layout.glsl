@@ -28,7 +28,8 @@ ivec3 level_origin(int level, int side) {
     return further < 0 ? origin : ivec3(place.x, origin.y + (side >> 1) + place.y, 0);
 }
 
-// [texel] The node of a level that begins at a cell, where there is one, in the image, and its layer.
-ivec3 node_at(View view, ivec2 cell, int level) {
-    return level_origin(level, covered_side(view)) + ivec3(cell >> spacing_log2(level), 0);
+// [texel] The node of a level that begins at a cell, where there is one, in the image, and its layer. slot: of the view.
+ivec3 node_at(View view, uint slot, ivec2 cell, int level) {
+    uint layers = SPARSEST == 0u ? view.levels_max : 1u;
+    return level_origin(level, covered_side(view)) + ivec3(cell >> spacing_log2(level), slot * layers);
 }

@@ -1,6 +1,6 @@
-// Samples of the shadow map: reverse-Z depths d = near / z, 0 where it is empty (algorithm.md §1).
+// Samples of the shadow map, of its layers, or of what a coarser level holds.
 
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 TEXTURE(layers);
 
 #include "coarse_fetch.glsl"
@@ -9,7 +9,7 @@ TEXTURE(layers);
 float depth_at(uint layer, ivec2 texel) {
     float depth = 0.0;
     if (reads_coarse_map()) depth = coarse_texel(texel, level_of_quality).y;
-    else depth = LAYERS > 1u ? texelFetch(layers, ivec3(texel, layer), 0).x : texelFetch(shadow_map, texel, 0).x;
+    else depth = LAYERS > 1u ? texelFetch(layers, ivec3(texel, layer), 0).x : sample_of(push.index, texel);
     return depth;
 }
 

@@ -10,3 +10,7 @@
 #include "resources.glsl"
 
 layout(push_constant, scalar) uniform PushBlock { Push push; };
+
+// Views whose maps are made side by side (plan/side_by_side.rs) have slots of their own: layers of the shadow map and of the hierarchy
+// over it, parts of the list of casters. As many views in a row as there are slots have different ones.
+uint slot_of(uint view) { return view % VIEWS_AT_ONCE; }

@@ -57,9 +57,10 @@
 // A view's shadow map and what is built over it.
 #define RESOURCE_caster_indices ARRAY(26, uint, caster_indices)
 #define RESOURCE_triangle_casts ARRAY(43, uint, triangle_casts)
-#define RESOURCE_shadow_map(AS) AS(27, texture2D, image2D, shadow_map)
+#define RESOURCE_shadow_map(AS) AS(27, texture2DArray, image2DArray, shadow_map)
 #define RESOURCE_layers(AS) AS(28, texture2DArray, image2DArray, layers)
 #define RESOURCE_coarse_map ARRAY(44, vec2, coarse_map)
+#define RESOURCE_hierarchy_groups ARRAY(65, HierarchyGroups, hierarchy_groups)
 #define RESOURCE_hierarchy(AS) AS(29, texture2DArray, image2DArray, hierarchy)
 
 // From kernels to visibility.

@@ -14,7 +14,7 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 TEXTURE(bottom_map);
 TEXTURE(receiver_pyramid);
 writeonly BUFFER(penumbra_extents);
@@ -66,7 +66,7 @@ void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, ivec2(view.map_size)))) return;
     float bottom = farthest_of(texelFetch(bottom_map, texel, 0).x);
-    float depth = push.level == 0u ? texelFetch(shadow_map, texel, 0).x : bottom;
+    float depth = push.level == 0u ? sample_of(push.index, texel) : bottom;
     uvec2 extent = fit.level_count > 0u && depth > 0.0 ? extent_of(view, fit, texel, depth) : NO_EXTENT;
     penumbra_extents[uint(texel.y) * view.map_size + uint(texel.x)] = extent;
     if (COUNT && extent != NO_EXTENT) {

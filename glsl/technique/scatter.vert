@@ -10,7 +10,7 @@ layout(constant_id = 46) const bool BOTTOM_PATCHES = false;  // patches have bot
 
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 TEXTURE(bottom_map);
 readonly BUFFER(penumbra_extents);
 
@@ -36,7 +36,7 @@ void main() {
     vec2 scale = fit.near / (view.half_size * (box.zw - box.xy));
     patch_bounds = (vec4(vec2(texel) - 0.5, vec2(texel) + 0.5) - fit.center.xyxy) / fit.focal.xyxy * scale.xyxy;
     texel_place = vec4(scale / grid.focal, -(grid.center + 0.5) / grid.focal * scale);
-    float top = texelFetch(shadow_map, texel, 0).x;
+    float top = sample_of(push.index, texel);
     float bottom = farthest_of(texelFetch(bottom_map, texel, 0).x);
     vec2 own = push.level == 0u ? vec2(top, BOTTOM_PATCHES ? bottom : 0.0) : vec2(bottom, 0.0);
     depths = vec4(-box.xy / (box.zw - box.xy), own);

@@ -9,7 +9,7 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(views);
 readonly BUFFER(fits);
-TEXTURE(shadow_map);
+#include "shadow_map.glsl"
 writeonly BUFFER(shadow_widths);
 
 void main() {
@@ -18,7 +18,7 @@ void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     // A view without casters is not read.
     if (fit.level_count == 0u || !in_map(texel, view.map_size)) return;
-    bool hidden = texelFetch(shadow_map, texel, 0).x > 0.0;
+    bool hidden = sample_of(push.index, texel) > 0.0;
     float widest = max(width_of(view, fit, vec2(START, 0.0)), width_of(view, fit, vec2(0.0, START)));
     vec2 seed = hidden ? vec2(-1.0) : vec2(texel);
     shadow_widths[place_of(texel, 0u, view.map_size)] = FLOOD ? seed : vec2(hidden ? widest : 0.0, 0.0);

@@ -11,12 +11,42 @@ pub struct Step {
     pub level: u32,
 }
 
-/// What a step is done for; its shaders find the number in `push.index`.
+/// What a step is done for; its shaders find the number, or the first, in `push.index`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scope {
     Frame,
     Light(u32),
-    View(u32),
+    /// Views side by side, from the first on.
+    Views {
+        first: u32,
+        count: u32,
+    },
+}
+
+impl Scope {
+    pub fn view(view: u32) -> Self {
+        Self::Views {
+            first: view,
+            count: 1,
+        }
+    }
+
+    /// View by view, if it has views.
+    pub fn each(self) -> impl Iterator<Item = Self> {
+        let (views, other) = match self {
+            Self::Frame | Self::Light(_) => (0..0, Some(self)),
+            Self::Views { first, count } => (first..first + count, None),
+        };
+        views.map(Self::view).chain(other)
+    }
+
+    /// Whether it is done for a view, alone or beside others.
+    pub fn has_view(self, view: u32) -> bool {
+        match self {
+            Self::Frame | Self::Light(_) => false,
+            Self::Views { first, count } => (first..first + count).contains(&view),
+        }
+    }
 }
 
 /// All steps of a frame that draws every map.

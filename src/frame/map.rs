@@ -4,12 +4,13 @@ use super::pass::{Domain, Drawn, Lent, Pass, Work};
 use super::resource::{Resource, Shape, Sizes};
 use super::{Casters, Density};
 use crate::gpu::ImageKind;
-use crate::shared::{self, Fit, SECTOR_STEPS, View};
+use crate::shared::{self, Fit, HierarchyGroups, SECTOR_STEPS, View};
 
 /// [texel] Frame of the shadow map that stays empty, so that contours close inside the map.
 const MARGIN: u32 = 1;
 
-const CLEAR_FITS: Pass = Pass::new("clear_fits", Work::Clear(&["fits"])).lasting();
+const CLEAR_FITS: Pass =
+    Pass::new("clear_fits", Work::Clear(&["fits", "hierarchy_groups"])).lasting();
 
 /// The visible receivers' bounds in the view (`algorithm.md` §10).
 const RECEIVERS: Pass =
@@ -121,6 +122,14 @@ pub struct Structures {
     pub microrects: bool,
 }
 
+/// [byte] Of a triangle in the list of casters.
+pub const CASTER_BYTES: u64 = size_of::<shared::uvec3>() as u64;
+
+/// A view's shadow map.
+pub fn map_shape(side: u32) -> Shape {
+    Shape::image(ImageKind::Layers, (side, side))
+}
+
 /// A hierarchy of levels below `levels` over a map of `map` × `map` texels, with bounds of 16 or 32 bits.
 pub fn hierarchy_shape(density: Density, map: u32, levels: u32, bits: u32) -> Shape {
     let kind = match bits {
@@ -136,26 +145,45 @@ pub fn first_passes() -> impl Iterator<Item = Pass> {
     [CLEAR_FITS].into_iter()
 }
 
-/// A view's shadow map and what is built on it, each with the level or layer that it makes.
-pub fn passes(casters: Casters, structures: Structures) -> Vec<(Pass, u32)> {
-    let map: &[Pass] = match casters {
-        Casters::Scene | Casters::Gathered => &[RECEIVERS, CASTERS, FIT, SHADOW_MAP],
-        Casters::DrawnByHost => &[RECEIVERS, REGION, FIT, PROJECTION, SHADOW_MAP_BY_HOST],
-        Casters::Maps => &[RECEIVERS, FIT, SHADOW_MAP_IMPORTED],
+/// What fits views' maps to their receivers and casters.
+pub fn fitting_passes(casters: Casters) -> impl Iterator<Item = Pass> {
+    let passes: &[Pass] = match casters {
+        Casters::Scene | Casters::Gathered => &[RECEIVERS, CASTERS, FIT],
+        Casters::DrawnByHost => &[RECEIVERS, REGION, FIT, PROJECTION],
+        Casters::Maps => &[RECEIVERS, FIT],
     };
-    let mut passes: Vec<(Pass, u32)> = map.iter().map(|&pass| (pass, 0)).collect();
+    passes.iter().copied()
+}
+
+/// What draws a view's map.
+pub fn drawing_pass(casters: Casters) -> Pass {
+    match casters {
+        Casters::Scene | Casters::Gathered => SHADOW_MAP,
+        Casters::DrawnByHost => SHADOW_MAP_BY_HOST,
+        Casters::Maps => SHADOW_MAP_IMPORTED,
+    }
+}
+
+/// What builds the hierarchies over views' maps, each pass with the level that it makes.
+pub fn hierarchy_passes(structures: Structures) -> impl Iterator<Item = (Pass, u32)> {
     let hierarchy = match structures.bounds_bits {
         16 => HIERARCHY_16,
         _ => HIERARCHY,
     };
     // The lowest two are built at once.
     let built = (0..structures.levels).filter(|&level| level != 1);
-    passes.extend(built.map(|level| (hierarchy, level)));
+    built.map(move |level| (hierarchy, level))
+}
+
+/// What else is made of a view's map, each pass with the level or layer that it makes.
+pub fn structure_passes(structures: Structures) -> Vec<(Pass, u32)> {
     let coarser = match structures.microrects {
         true => MICRORECTS,
         false => COARSE_MAP,
     };
-    passes.extend((1..=structures.coarse_levels).map(|level| (coarser, level)));
+    let mut passes: Vec<(Pass, u32)> = (1..=structures.coarse_levels)
+        .map(|level| (coarser, level))
+        .collect();
     for layer in 0..structures.layers {
         passes.extend((layer > 0).then_some((PEEL, layer)));
         passes.push((KEEP_LAYER, layer));
@@ -187,7 +215,9 @@ pub const RESOURCES: &[Resource] = &[
             .when(s.has_views() && s.tells_casters)
     }),
     Resource::new("caster_indices", |s| {
-        Shape::Buffer(s.inventory.triangles * 12).when(s.has_views() && s.casters.are_triangles())
+        Shape::Buffer(s.inventory.triangles * CASTER_BYTES)
+            .times(s.views_at_once)
+            .when(s.has_views() && s.casters.are_triangles())
     }),
     Resource::new("givens", |s| {
         Shape::array::<shared::Given>(s.views.into()).when(!s.casters.are_triangles())
@@ -195,11 +225,9 @@ pub const RESOURCES: &[Resource] = &[
     Resource::new("projections", |s| {
         Shape::array::<shared::Projection>(s.views.into()).when(s.casters == Casters::DrawnByHost)
     }),
-    Resource::new("shadow_map", |s| {
-        Shape::image(ImageKind::Depth, (s.map, s.map))
-    }),
+    Resource::new("shadow_map", |s| map_shape(s.map).times(s.views_at_once)),
     Resource::new("hierarchy", |s| {
-        hierarchy_shape(s.density, s.map, s.levels, s.bounds_bits)
+        hierarchy_shape(s.density, s.map, s.levels, s.bounds_bits).times(s.views_at_once)
     }),
     Resource::new("coarse_map", |s| {
         Shape::array::<[f32; 2]>(coarse_texels(s)).when(!s.microrects)
@@ -216,6 +244,9 @@ pub const RESOURCES: &[Resource] = &[
 pub const VIEW_RESOURCES: &[Resource] = &[
     Resource::copied("views", |s| Shape::array::<View>(s.views.into())),
     Resource::new("fits", |s| Shape::array::<Fit>(s.views.into())),
+    Resource::new("hierarchy_groups", |s| {
+        Shape::array::<HierarchyGroups>(s.views.into())
+    }),
 ];
 
 /// The sector tables of sub-lights that a disc's rim cuts.

@@ -59,6 +59,8 @@ pub struct Sizes {
     /// [level] Of the hierarchy; 0 = none.
     pub levels: u32,
     pub density: Density,
+    /// [slot] For views whose maps are made side by side.
+    pub views_at_once: u32,
     /// [layer] Of the shadow map that are kept.
     pub layers: u32,
     /// [level] Coarser than the map that are kept; 0 = no budget limits quality.
@@ -128,6 +130,15 @@ impl Shape {
 
     pub fn layers(kind: ImageKind, size: (u32, u32), layers: u32) -> Self {
         Self::Image { kind, size, layers }
+    }
+
+    /// So many of them, one after another: an image's layers.
+    #[must_use]
+    pub fn times(self, count: u32) -> Self {
+        match self {
+            Self::Buffer(bytes) => Self::Buffer(bytes * u64::from(count)),
+            Self::Image { kind, size, layers } => Self::layers(kind, size, layers * count),
+        }
     }
 
     /// As it is if it is needed, or else without bytes.

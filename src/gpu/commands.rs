@@ -7,7 +7,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::device::Gpu;
-use super::draw::{Attachments, Draw, begin_rendering, record_draw};
+use super::draw::Rendering;
 use super::host::HostImage;
 use super::memory::{Buffer, Image};
 use super::pass::Bound;
@@ -157,43 +157,11 @@ impl<'a> Commands<'a> {
         self.end_pass();
     }
 
-    /// Draws with one or more pipelines into cleared attachments.
-    pub fn draw<'p>(
-        &mut self,
-        name: &'static str,
-        push: Push,
-        attachments: &Attachments,
-        draws: impl IntoIterator<Item = (Bound<'p>, Draw<'p>)>,
-    ) {
-        self.render(name, attachments, |device, commands| {
-            for (bound, draw) in draws {
-                record_draw(device, commands, bound, push, draw);
-            }
-        });
-    }
-
-    /// Lets the host draw into cleared attachments, with viewport and scissor set.
-    pub fn draw_by_host(
-        &mut self,
-        name: &'static str,
-        attachments: &Attachments,
-        draw: impl FnOnce(),
-    ) {
-        self.render(name, attachments, |_, _| draw());
-    }
-
-    fn render(
-        &mut self,
-        name: &'static str,
-        attachments: &Attachments,
-        draw: impl FnOnce(&ash::Device, vk::CommandBuffer),
-    ) {
+    /// Renders, once or several times, within one pass; what is drawn touches nothing that the pass draws elsewhere.
+    pub fn render<R>(&mut self, name: &'static str, record: impl FnOnce(&Rendering) -> R) -> R {
         self.pass(name, |device, commands| {
-            begin_rendering(device, commands, attachments);
-            draw(device, commands);
-            // SAFETY: recording; rendering was begun above.
-            unsafe { device.cmd_end_rendering(commands) };
-        });
+            record(&Rendering { device, commands })
+        })
     }
 
     /// Fills buffers with zeros.
@@ -294,10 +262,15 @@ impl<'a> Commands<'a> {
     }
 
     /// One pass: what was written before is visible to it.
-    fn pass(&mut self, name: &'static str, record: impl FnOnce(&ash::Device, vk::CommandBuffer)) {
+    fn pass<R>(
+        &mut self,
+        name: &'static str,
+        record: impl FnOnce(&ash::Device, vk::CommandBuffer) -> R,
+    ) -> R {
         self.begin_pass(name);
-        record(&self.gpu.device, self.raw);
+        let result = record(&self.gpu.device, self.raw);
         self.end_pass();
+        result
     }
 
     fn begin_pass(&mut self, name: &'static str) {

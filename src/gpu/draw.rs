@@ -42,11 +42,41 @@ fn attach(target: Target) -> vk::RenderingAttachmentInfo<'static> {
         .store_op(vk::AttachmentStoreOp::STORE)
 }
 
-pub(super) fn begin_rendering(
-    device: &ash::Device,
-    commands: vk::CommandBuffer,
-    attachments: &Attachments,
-) {
+/// A pass that renders.
+pub struct Rendering<'a> {
+    pub(super) device: &'a ash::Device,
+    pub(super) commands: vk::CommandBuffer,
+}
+
+impl Rendering<'_> {
+    /// Draws with one or more pipelines into cleared attachments.
+    pub fn draw<'p>(
+        &self,
+        attachments: &Attachments,
+        push: Push,
+        draws: impl IntoIterator<Item = (Bound<'p>, Draw<'p>)>,
+    ) {
+        self.render(attachments, || {
+            for (bound, draw) in draws {
+                record_draw(self.device, self.commands, bound, push, draw);
+            }
+        });
+    }
+
+    /// Lets the host draw into cleared attachments, with viewport and scissor set.
+    pub fn draw_by_host(&self, attachments: &Attachments, draw: impl FnOnce()) {
+        self.render(attachments, draw);
+    }
+
+    fn render(&self, attachments: &Attachments, draw: impl FnOnce()) {
+        begin_rendering(self.device, self.commands, attachments);
+        draw();
+        // SAFETY: recording; rendering was begun above.
+        unsafe { self.device.cmd_end_rendering(self.commands) };
+    }
+}
+
+fn begin_rendering(device: &ash::Device, commands: vk::CommandBuffer, attachments: &Attachments) {
     let mut colors = [vk::RenderingAttachmentInfo::default(); MAX_COLORS];
     for (info, color) in colors.iter_mut().zip(attachments.colors) {
         *info = attach(*color);
@@ -92,7 +122,7 @@ pub(super) fn begin_rendering(
     }
 }
 
-pub(super) fn record_draw(
+fn record_draw(
     device: &ash::Device,
     commands: vk::CommandBuffer,
     bound: Bound,

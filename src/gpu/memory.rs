@@ -30,7 +30,7 @@ pub enum ImageKind {
     Vector,
     /// RGBA8, drawn to and sampled.
     Color,
-    /// D32_SFLOAT, an array that depth is copied to, sampled.
+    /// D32_SFLOAT, an array that is drawn to a layer at a time, or that depth is copied to, sampled.
     Layers,
     /// RG32F, an array written by compute passes and sampled.
     Bounds,
@@ -95,12 +95,13 @@ impl ImageKind {
 
     fn usage(self) -> vk::ImageUsageFlags {
         let own = match self {
-            Self::Depth | Self::DepthSamples => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            Self::Depth | Self::DepthSamples | Self::Layers => {
+                vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
+            }
             Self::Vector => vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE,
             Self::Color | Self::Sums | Self::Sums16 | Self::VectorSamples | Self::ColorSamples => {
                 vk::ImageUsageFlags::COLOR_ATTACHMENT
             }
-            Self::Layers => vk::ImageUsageFlags::empty(),
             Self::Bounds | Self::Bounds16 => vk::ImageUsageFlags::STORAGE,
         };
         own | vk::ImageUsageFlags::SAMPLED
@@ -129,6 +130,8 @@ pub struct Image {
     pub layers: u32,
     pub(super) raw: vk::Image,
     pub(super) view: vk::ImageView,
+    /// Of each layer, where layers are drawn to.
+    layer_views: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
 }
 
@@ -268,6 +271,7 @@ impl Image {
                 layers,
                 raw,
                 view: vk::ImageView::null(),
+                layer_views: Vec::new(),
                 allocation: None,
             };
             let requirements = gpu.device.get_image_memory_requirements(raw);
@@ -277,22 +281,32 @@ impl Image {
             gpu.device
                 .bind_image_memory(raw, memory, offset)
                 .map_err(failed(&format!("vkBindImageMemory of {name}")))?;
-            image.view = image.create_view()?;
+            let form = match kind.is_array() {
+                true => vk::ImageViewType::TYPE_2D_ARRAY,
+                false => vk::ImageViewType::TYPE_2D,
+            };
+            image.view = image.create_view(form, image.range())?;
+            if kind == ImageKind::Layers {
+                for layer in 0..layers {
+                    let range = image.range().base_array_layer(layer).layer_count(1);
+                    let view = image.create_view(vk::ImageViewType::TYPE_2D, range)?;
+                    image.layer_views.push(view);
+                }
+            }
             Ok(image)
         }
     }
 
-    fn create_view(&self) -> Result<vk::ImageView> {
-        // An array whatever the number of its layers: its shaders say so.
+    fn create_view(
+        &self,
+        form: vk::ImageViewType,
+        range: vk::ImageSubresourceRange,
+    ) -> Result<vk::ImageView> {
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw)
-            .view_type(if self.kind.is_array() {
-                vk::ImageViewType::TYPE_2D_ARRAY
-            } else {
-                vk::ImageViewType::TYPE_2D
-            })
+            .view_type(form)
             .format(self.kind.format())
-            .subresource_range(self.range());
+            .subresource_range(range);
         // SAFETY: the image is alive and bound.
         unsafe {
             self.gpu
@@ -309,10 +323,10 @@ impl Image {
             .layer_count(self.layers)
     }
 
-    /// As something to draw to.
-    pub fn target(&self) -> Target {
+    /// As something to draw to; of an image whose layers are drawn to one at a time, a layer.
+    pub fn target(&self, layer: u32) -> Target {
         Target {
-            view: self.view,
+            view: *self.layer_views.get(layer as usize).unwrap_or(&self.view),
             layout: vk::ImageLayout::GENERAL,
             size: (self.width, self.height),
         }
@@ -332,7 +346,9 @@ impl Drop for Image {
         // SAFETY: destroyed once; whoever submitted work with it has waited for it.
         unsafe {
             let callbacks = self.gpu.callbacks();
-            self.gpu.device.destroy_image_view(self.view, callbacks);
+            for &view in self.layer_views.iter().chain([&self.view]) {
+                self.gpu.device.destroy_image_view(view, callbacks);
+            }
             self.gpu.device.destroy_image(self.raw, callbacks);
         }
         release(&self.gpu, self.allocation.take());

@@ -24,6 +24,8 @@ pub struct Limits {
     pub storage_alignment: u64,
     /// Whether draws into R32_SFLOAT can add up.
     pub adds_floats: bool,
+    /// Shaders run on the CPU.
+    pub is_cpu: bool,
     /// [turn] Loop turns after which the driver ends all loops of an invocation, whatever their conditions.
     pub loop_turns: u32,
 }
@@ -31,6 +33,11 @@ pub struct Limits {
 impl Limits {
     /// [turn] Where a driver leaves loops alone.
     pub const ENDLESS_LOOPS: u32 = u32::MAX;
+
+    /// [byte] That a frame can take.
+    pub fn bytes_max(&self) -> u64 {
+        self.memory_bytes.min(self.allowed_bytes)
+    }
 }
 
 /// [turn] lavapipe allows 65535 in sum over all loops and over the lanes of a vector, which wait for one another; the
@@ -169,6 +176,7 @@ pub fn limits(instance: &ash::Instance, device: vk::PhysicalDevice) -> Limits {
         allowed_bytes: u64::MAX,
         storage_alignment: properties.limits.min_storage_buffer_offset_alignment.max(1),
         adds_floats: adds_floats(instance, device),
+        is_cpu: properties.device_type == vk::PhysicalDeviceType::CPU,
         loop_turns: match driver {
             vk::DriverId::MESA_LLVMPIPE => LAVAPIPE_LOOP_TURNS,
             _ => Limits::ENDLESS_LOOPS,

@@ -1,7 +1,7 @@
 //! The passes of a frame, in the order in which they are recorded.
 
 use super::{Plan, ViewSet};
-use crate::frame::{Graph, Pass, Scope, Step, back, counts, front, kernel, map};
+use crate::frame::{Graph, Scope, Step, back, counts, front, kernel, map};
 use crate::technique::Recipe;
 
 impl Plan {
@@ -24,10 +24,11 @@ impl Plan {
             graph.add(scope, back::first_passes(light.accumulates()));
             let mut view = light.light.view_first;
             for set in &light.sets {
-                let passes = self.view_passes(set);
-                for _ in &set.views {
-                    graph.add_levels(Scope::View(view), passes.iter().copied());
-                    view += 1;
+                let end = view + set.views.len() as u32;
+                while view < end {
+                    let count = self.views_at_once.min(end - view);
+                    self.add_views(&mut graph, set, view, count);
+                    view += count;
                 }
             }
             graph.add(scope, back::light_passes());
@@ -39,11 +40,17 @@ impl Plan {
         graph
     }
 
-    /// What runs in each view of a set, with the level or layer that each pass makes.
-    fn view_passes(&self, set: &ViewSet) -> Vec<(Pass, u32)> {
-        let mut passes = map::passes(self.casters, self.structures(&set.recipe));
-        passes.extend(&set.recipe.passes);
-        passes
+    /// Views of a set whose maps are made side by side; then what reads them, view by view.
+    fn add_views(&self, graph: &mut Graph, set: &ViewSet, first: u32, count: u32) {
+        let structures = self.structures(&set.recipe);
+        let all = Scope::Views { first, count };
+        graph.add(all, map::fitting_passes(self.casters));
+        graph.add(all, [map::drawing_pass(self.casters)]);
+        graph.add_levels(all, map::hierarchy_passes(structures));
+        for view in all.each() {
+            graph.add_levels(view, map::structure_passes(structures));
+            graph.add_levels(view, set.recipe.passes.iter().copied());
+        }
     }
 
     fn structures(&self, recipe: &Recipe) -> map::Structures {
@@ -67,9 +74,9 @@ impl Plan {
         counts(self.steps())
     }
 
-    /// The same of a single view.
+    /// The same of those that a view has a part in.
     pub(super) fn passes_of_view(&self, view: u32) -> Vec<(&'static str, u32)> {
-        let of_view = |step: &&Step| step.scope == Scope::View(view);
+        let of_view = |step: &&Step| step.scope.has_view(view);
         counts(self.steps().filter(of_view))
     }
 }

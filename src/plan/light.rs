@@ -140,6 +140,12 @@ pub(super) struct DraftSet {
     poses: Vec<ViewPose>,
 }
 
+impl DraftSet {
+    pub fn view_count(&self) -> u32 {
+        self.poses.len() as u32
+    }
+}
+
 /// What has been given away to the lights before.
 #[derive(Default)]
 pub(super) struct Numbering {

@@ -15,7 +15,7 @@ pub(super) fn hierarchy_levels(side: u32) -> u32 {
 }
 
 /// Whether a device has images like that.
-fn fits(shape: Shape, limits: &Limits) -> bool {
+pub(super) fn fits(shape: Shape, limits: &Limits) -> bool {
     match shape {
         Shape::Buffer(bytes) => bytes <= limits.buffer_bytes,
         Shape::Image { size, layers, .. } => {

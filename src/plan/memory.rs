@@ -82,6 +82,7 @@ impl Plan {
             bounds_bits: self.bounds_bits,
             levels: self.levels,
             density: self.density,
+            views_at_once: self.views_at_once,
             layers: most(|recipe| recipe.layers).unwrap_or(0),
             coarse_levels: most(|recipe| recipe.coarse_levels).unwrap_or(0),
             microrects: self.needs(|recipe| recipe.microrects),
@@ -162,10 +163,7 @@ impl Plan {
     }
 
     fn check_peak(&self, limits: &Limits) -> Result<()> {
-        let (peak, most) = (
-            self.peak_bytes(),
-            limits.memory_bytes.min(limits.allowed_bytes),
-        );
+        let (peak, most) = (self.peak_bytes(), limits.bytes_max());
         if peak <= most {
             return Ok(());
         }
@@ -179,9 +177,13 @@ impl Plan {
             true => ", or --mssm-bits 16",
             false => "",
         };
+        let fewer = match self.views_at_once {
+            1 => "",
+            _ => ", or fewer --views-at-once",
+        };
         Err(Error::Unsupported(format!(
             "the frame takes {} at its peak, {} of it for {name}, and {source} {}; \
-             choose a smaller --map or --size{halved}{raised}",
+             choose a smaller --map or --size{fewer}{halved}{raised}",
             human(peak),
             human(bytes),
             human(most),

@@ -42,7 +42,7 @@ impl Plan {
     /// What a kept shadow map leaves out.
     pub(super) fn omit_lasting(&mut self) {
         let lasting = (self.graph.steps.iter())
-            .filter(|step| step.pass.lasts && matches!(step.scope, Scope::View(_)));
+            .filter(|step| step.pass.lasts && matches!(step.scope, Scope::Views { .. }));
         let names: Vec<&str> = counts(lasting).iter().map(|(name, _)| *name).collect();
         self.omit(
             names.join(", "),

@@ -112,7 +112,15 @@ impl Plan {
             plural(faces.len(), "face"),
             faces.join(", ")
         )?;
-        writeln!(out, "  shadow map  {0}x{0} texels", set.settings.map)?;
+        let at_once = match self.views_at_once {
+            1 => String::new(),
+            count => format!(", of {count} views at once"),
+        };
+        writeln!(
+            out,
+            "  shadow map  {0}x{0} texels{at_once}",
+            set.settings.map
+        )?;
         if set.recipe.kernels {
             let (width, height) = self.size;
             writeln!(

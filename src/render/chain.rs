@@ -78,7 +78,7 @@ impl Chain {
             let left_out = plan.retained && step.pass.lasts;
             if !left_out && wanted(step) {
                 let side = match step.scope {
-                    Scope::View(view) => self.sides[view as usize],
+                    Scope::Views { first, .. } => self.sides[first as usize],
                     Scope::Frame | Scope::Light(_) => 0,
                 };
                 frame.record(commands, step, &self.pipelines[index], side, inputs)?;
@@ -105,7 +105,7 @@ impl Distinct {
         let (mut passes, mut of_step) = (Vec::new(), Vec::new());
         for step in &plan.graph.steps {
             let base = match step.scope {
-                Scope::View(view) => &of_views[view as usize],
+                Scope::Views { first, .. } => &of_views[first as usize],
                 Scope::Frame | Scope::Light(_) => &of_frame,
             };
             let all = constants::of_pass(&step.pass, base.clone());

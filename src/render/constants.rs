@@ -19,6 +19,7 @@ pub fn of_frame(plan: &Plan) -> Constants {
         ("ORTHOGRAPHIC", plan.orthographic.into()),
         ("DENSE_LEVELS", plan.density.dense),
         ("SPARSEST", plan.density.sparsest),
+        ("VIEWS_AT_ONCE", plan.views_at_once),
         ("GIVEN_MAPS", (plan.casters == Casters::Maps).into()),
         ("RESIDUALS", (plan.casters == Casters::Scene).into()),
         ("TELLS_CASTERS", plan.tells_casters.into()),

@@ -2,12 +2,15 @@
 
 use std::mem::offset_of;
 
+use super::draw::Drawing;
 use super::pipelines::Pipelines;
 use crate::error::{Error, Result};
-use crate::frame::{Domain, Drawn, Extent, Lent, Scope, Step, Target, Work};
-use crate::gpu::{self, Attachments, Commands, Draw, Groups, MAX_COLORS, Resources};
+use crate::frame::{Domain, Lent, Scope, Step, Work};
+use crate::gpu::{self, Commands, Groups, Resources};
 use crate::plan::Plan;
-use crate::shared::{Fit, GROUP_SIZE, GROUPS_PER_ROW, Instance, Lists, Push, Round, TILE_SIZE};
+use crate::shared::{
+    Fit, GROUP_SIZE, GROUPS_PER_ROW, HierarchyGroups, Instance, Lists, Push, Round, TILE_SIZE,
+};
 
 /// What a host brings along for one frame; nothing where the library draws by itself.
 #[derive(Default)]
@@ -69,13 +72,21 @@ impl Recording<'_> {
             } => self.dispatch_list(commands, step, pipelines, list)?,
             Work::Dispatch { over, .. } => {
                 let bound = pipelines.compute()?.with(self.list(step, inputs));
-                let groups = self.groups(over, push(step), side)?;
+                let groups = self.groups(over, step, side)?;
                 commands.dispatch(name, bound, push(step), groups);
             }
-            Work::Draw { what, into, .. } => {
-                let target = self.target(into, side, inputs)?;
-                self.draw(commands, step, pipelines, (what, side), &target, inputs)?;
-            }
+            Work::Draw { what, into, .. } => commands.render(name, |rendering| {
+                let views = step.scope.each().map(|scope| Step { scope, ..*step });
+                let draw = |step| Drawing {
+                    recording: self,
+                    step,
+                    side,
+                };
+                let mut drawings = views.map(draw);
+                drawings.try_for_each(|drawing| {
+                    drawing.record(rendering, pipelines, what, into, inputs)
+                })
+            })?,
             Work::CopyLayer { from, to } => {
                 let (from, to) = (resources.image(from)?, resources.image(to)?);
                 commands.copy_layer(name, from, to, step.level);
@@ -108,25 +119,25 @@ impl Recording<'_> {
     }
 
     /// With which of its lists of resources a pass is recorded.
-    fn list(&self, step: &Step, inputs: &Inputs) -> usize {
+    pub(super) fn list(&self, step: &Step, inputs: &Inputs) -> usize {
         match (step.pass.lent, step.scope) {
             (Lent::Surface, _) => inputs.slot,
-            (Lent::Map, Scope::View(view)) => {
-                inputs.slot * self.plan.views().count() + view as usize
+            (Lent::Map, Scope::Views { first, .. }) => {
+                inputs.slot * self.plan.views().count() + first as usize
             }
             _ => 0,
         }
     }
 
-    /// `side`: [texel] of the view's map.
-    fn groups(&self, over: Domain, push: Push, side: u32) -> Result<Groups<'_>> {
-        let plan = self.plan;
+    /// `side`: [texel] of the views' maps.
+    fn groups(&self, over: Domain, step: &Step, side: u32) -> Result<Groups<'_>> {
+        let (plan, push) = (self.plan, push(step));
         let triangles = plan.frame.opaque_count + plan.frame.masked_count;
         let found = |offset| {
             let fits = self.resources.buffer("fits")?;
             Ok(Groups::Indirect(fits, in_fit(push.index, offset)))
         };
-        Ok(match over {
+        let mut groups = match over {
             Domain::Image => Groups::Direct(tiles(plan.size)),
             Domain::PixelReduction => reduction(plan.size.0 * plan.size.1),
             Domain::TriangleReduction => reduction(triangles),
@@ -143,8 +154,10 @@ impl Recording<'_> {
             }
             Domain::Packets => return found(offset_of!(Fit, classify_groups)),
             Domain::HierarchyLevel => {
-                let level = push.level as usize * size_of::<[u32; 3]>();
-                return found(offset_of!(Fit, level_groups) + level);
+                let groups = self.resources.buffer("hierarchy_groups")?;
+                let of_view = push.index as usize * size_of::<HierarchyGroups>();
+                let offset = of_view + push.level as usize * size_of::<[u32; 3]>();
+                return Ok(Groups::Indirect(groups, offset as u64));
             }
             Domain::PyramidLevel => {
                 let side = side.div_ceil(1 << push.level);
@@ -154,114 +167,11 @@ impl Recording<'_> {
             Domain::Once | Domain::Instances | Domain::PacketList | Domain::PixelList => {
                 Groups::Direct([1, 1, 1])
             }
-        })
-    }
-
-    fn target(&self, into: Target, side: u32, inputs: &Inputs) -> Result<Attached> {
-        match into {
-            Target::Images {
-                colors,
-                depth,
-                extent,
-                ..
-            } => {
-                let image = |name| {
-                    let mut target = self.resources.image(name)?.target();
-                    if extent != Extent::Image {
-                        target.size = (side, side);
-                    }
-                    Ok(target)
-                };
-                let mut attached = [gpu::Target::default(); MAX_COLORS];
-                for (target, name) in attached.iter_mut().zip(colors) {
-                    *target = image(name)?;
-                }
-                Ok(Attached {
-                    colors: attached,
-                    color_count: colors.len(),
-                    depth: depth.map(image).transpose()?,
-                    margin: match extent {
-                        Extent::Image => 0,
-                        Extent::Map { margin } => margin,
-                    },
-                })
-            }
-            Target::Lent => {
-                let output = inputs
-                    .output
-                    .ok_or_else(|| missing("an image for the result"))?;
-                Ok(Attached {
-                    colors: [output; MAX_COLORS],
-                    color_count: 1,
-                    depth: None,
-                    margin: 0,
-                })
-            }
+        };
+        if let (Groups::Direct([_, _, z]), Scope::Views { count, .. }) = (&mut groups, step.scope) {
+            *z = count;
         }
-    }
-
-    fn draw(
-        &self,
-        commands: &mut Commands,
-        step: &Step,
-        pipelines: &Pipelines,
-        (what, side): (Drawn, u32),
-        target: &Attached,
-        inputs: &mut Inputs,
-    ) -> Result<()> {
-        let (name, push, into) = (step.pass.name, push(step), target.attachments());
-        let list = self.list(step, inputs);
-        match (what, pipelines) {
-            (Drawn::Surface | Drawn::WholeImage | Drawn::Texels, Pipelines::Draw(pass)) => {
-                let frame = &self.plan.frame;
-                let (count, instances) = match what {
-                    Drawn::Surface => (3 * (frame.opaque_count + frame.masked_count), 1),
-                    Drawn::Texels => (6, side * side),
-                    _ => (3, 1),
-                };
-                let draw = (pass.with(list), Draw::Vertices { count, instances });
-                commands.draw(name, push, &into, [draw]);
-            }
-            (Drawn::Casters { .. }, Pipelines::Casters { opaque, masked }) => {
-                let fits = self.resources.buffer("fits")?;
-                let indices = self.resources.buffer("caster_indices")?;
-                let casters = |offset| Draw::Indexed {
-                    indices,
-                    command: (fits, in_fit(push.index, offset)),
-                };
-                let opaque = (opaque.with(0), casters(offset_of!(Fit, opaque_draw)));
-                let masked = masked.as_ref();
-                let masked =
-                    masked.map(|pass| (pass.with(0), casters(offset_of!(Fit, masked_draw))));
-                commands.draw(name, push, &into, [opaque].into_iter().chain(masked));
-            }
-            (Drawn::ByHost, _) => {
-                let draw = inputs.draw.as_mut();
-                let draw = draw.ok_or_else(|| missing("what draws the casters"))?;
-                commands.draw_by_host(name, &into, || draw(push.index));
-            }
-            _ => return Err(missing("the pipelines of a draw")),
-        }
-        Ok(())
-    }
-}
-
-/// What a draw goes to.
-struct Attached {
-    colors: [gpu::Target; MAX_COLORS],
-    color_count: usize,
-    depth: Option<gpu::Target>,
-    /// [texel] Frame round the image that nothing is drawn to.
-    margin: u32,
-}
-
-impl Attached {
-    fn attachments(&self) -> Attachments<'_> {
-        Attachments {
-            colors: &self.colors[..self.color_count],
-            depth: self.depth,
-            margin: self.margin,
-        }
+        Ok(groups)
     }
 }
 
@@ -284,14 +194,15 @@ fn dispatch_instances(
     commands.dispatch_independent(name, instances.filter_map(dispatch));
 }
 
-fn missing(what: &str) -> Error {
+pub(super) fn missing(what: &str) -> Error {
     Error::Invalid(format!("the frame lacks {what} that was planned for"))
 }
 
-fn push(step: &Step) -> Push {
+/// What a step's shaders are told.
+pub(super) fn push(step: &Step) -> Push {
     let index = match step.scope {
         Scope::Frame => 0,
-        Scope::Light(index) | Scope::View(index) => index,
+        Scope::Light(index) | Scope::Views { first: index, .. } => index,
     };
     Push {
         index,
@@ -323,7 +234,7 @@ fn tiles((width, height): (u32, u32)) -> [u32; 3] {
 }
 
 /// [byte] Where in a view's fit a field stands.
-fn in_fit(view: u32, offset: usize) -> u64 {
+pub(super) fn in_fit(view: u32, offset: usize) -> u64 {
     (view as usize * size_of::<Fit>() + offset) as u64
 }
 

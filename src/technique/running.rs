@@ -8,7 +8,7 @@ use crate::scene::AreaLight;
 use crate::shared::LEAST_BUDGET;
 
 /// Knobs that every technique reads, whatever its lights.
-const COMMON: [&str; 2] = ["map", "bias"];
+const COMMON: [&str; 3] = ["map", "bias", "views-at-once"];
 
 /// [texel] A map of a point that is no larger is not made smaller.
 const POINT_MAP: u32 = 128;

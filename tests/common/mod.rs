@@ -115,9 +115,9 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
         planned: planned.clone(),
         fit: renderer.fits().expect("fits")[view as usize],
         map: renderer
-            .read_image("shadow_map", texels)
+            .read_image_of_view("shadow_map", view, texels)
             .expect("shadow_map"),
-        hierarchy: bounds(renderer),
+        hierarchy: bounds(renderer, view),
         tiles: listed(renderer, "tiles", lists.tile_count),
         kernels: renderer.read_buffer("kernels", pixels).expect("kernels"),
         packets: if local {
@@ -140,7 +140,7 @@ pub fn traces(renderer: &mut Renderer, view: u32) -> Traces {
 }
 
 /// The hierarchy, in however many bits.
-fn bounds(renderer: &Renderer) -> Vec<[f32; 2]> {
+fn bounds(renderer: &Renderer, view: u32) -> Vec<[f32; 2]> {
     let plan = renderer.plan();
     let (width, height, layers) = plan.density.extent(plan.map, plan.levels);
     let count = (width * height * layers) as usize;
@@ -149,14 +149,19 @@ fn bounds(renderer: &Renderer) -> Vec<[f32; 2]> {
         0 => 0.0,
         half => f32::from_bits((u32::from(half) << 13) + (112 << 23)),
     };
-    let read = "the hierarchy can be read";
     match plan.bounds_bits {
         16 => {
-            let halves: Vec<[u16; 2]> = renderer.read_image("hierarchy", count).expect(read);
+            let halves: Vec<[u16; 2]> = read(renderer, view, count);
             halves.into_iter().map(|pair| pair.map(widened)).collect()
         }
-        _ => renderer.read_image("hierarchy", count).expect(read),
+        _ => read(renderer, view, count),
     }
+}
+
+/// `count` values of a view's hierarchy.
+fn read<T: bytemuck::Pod>(renderer: &Renderer, view: u32, count: usize) -> Vec<T> {
+    let read = renderer.read_image_of_view("hierarchy", view, count);
+    read.expect("the hierarchy can be read")
 }
 
 fn listed<T: bytemuck::Pod>(renderer: &Renderer, name: &str, count: u32) -> Vec<T> {

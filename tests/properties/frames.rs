@@ -29,6 +29,67 @@ fn the_same_shot_has_the_same_bits() {
     }
 }
 
+/// Faces, points near occluders, lists of packets of a fixed size, and techniques that read the map in other ways. Views fill their
+/// dispatches by fives, the last one not wholly.
+#[test]
+fn how_many_views_are_made_at_once_changes_no_bit() {
+    let technique = |technique| Settings {
+        split: 3,
+        map: 64,
+        ..Settings::usual(technique)
+    };
+    let shots = [
+        ("knot", settings(128, 4)),
+        ("colonnade", settings(64, 3)),
+        (
+            "tree",
+            Settings {
+                hierarchy: Hierarchy::Mssm,
+                packet: (4, 4),
+                ..settings(64, 3)
+            },
+        ),
+        ("plate", technique(Technique::Micropatch)),
+        (
+            "knot",
+            Settings {
+                back_faces: true,
+                ..technique(Technique::ShadowWidth)
+            },
+        ),
+        (
+            "knot",
+            Settings {
+                budget: Some(8),
+                ..technique(Technique::Bitmask)
+            },
+        ),
+        (
+            "colonnade",
+            Settings {
+                maps: 23,
+                ..technique(Technique::ReferenceMaps)
+            },
+        ),
+    ];
+    for (name, settings) in shots {
+        let mut shot = load(name, 64, settings);
+        let mut image = |views_at_once| {
+            shot.settings.views_at_once = Some(views_at_once);
+            with_gpu(|gpu| {
+                let mut renderer = renderer(gpu, &shot);
+                let steps = renderer.render().expect("a frame").plan.steps().count();
+                (renderer.visibility(0).expect("visibility"), steps)
+            })
+        };
+        let (one, most) = image(1);
+        let (several, fewer) = image(5);
+        let technique = &shot.settings.technique;
+        assert!(fewer < most, "{name}, {technique}: {most} steps, then {fewer}");
+        assert!(same_bits(&one, &several), "{name}, {technique}");
+    }
+}
+
 /// Where pixels are counted, tiles are listed that have nothing to add.
 #[test]
 fn counting_changes_no_bit() {

@@ -24,6 +24,7 @@ const LIMITS: Limits = Limits {
     memory_bytes: 1 << 33,
     allowed_bytes: u64::MAX,
     adds_floats: true,
+    is_cpu: true,
     loop_turns: 60000,
 };
 
