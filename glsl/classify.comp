@@ -3,6 +3,7 @@
 // Which packets are coherent: they go to the packet list, the pixels of the others to the pixel list [Yang09 §4.3, eq. 4–6].
 // Every penumbra pixel comes to one of the lists; which one decides on run time only.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "receiver.glsl"
 #include "kernel.glsl"
 #include "coarse_map.glsl"
@@ -21,6 +22,7 @@ BUFFER(counters);
 readonly BUFFER(quality);
 
 #include "surface.glsl"
+#include "part_of_view.glsl"
 #include "packet_grid.glsl"
 #include "rounds.glsl"
 #include "list_append.glsl"
@@ -111,8 +113,8 @@ void main() {
     uvec2 grid = packet_grid();
     uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, grid))) return;
-    View view = views[push.index];
-    Fit fit = fits[push.index];
+    View view = views[view_index()];
+    Fit fit = fits[view_index()];
     PacketStats stats;
     stats.packet = Packet(at.y * grid.x + at.x, 0u, 0u, 1e30, 0.0, 1e30, vec4(1e30, 1e30, -1e30, -1e30), vec2(0.0),
                           vec2(1e30, -1e30), vec4(1e30, 1e30, -1e30, -1e30));

@@ -8,13 +8,13 @@
 // pixels walk together is decided here (local_packets.glsl). The image is that of pixel_visibility.comp, to which packets
 // go whose walk is longer than the driver allows.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "receiver.glsl"
 #include "kernel.glsl"
 #include "contour.glsl"
 #include "map.glsl"
 #include "budget.glsl"
 #include "rounds.glsl"
-#include "occlusion.glsl"
 #include "count.glsl"
 #include "radial.glsl"
 #include "blend.glsl"
@@ -32,6 +32,8 @@ BUFFER(packets);
 BUFFER(pixels);
 
 #include "surface.glsl"
+#include "part_of_view.glsl"
+#include "occlusion.glsl"
 #include "packet_grid.glsl"
 #include "list_append.glsl"
 #include "window.glsl"
@@ -188,7 +190,7 @@ void hold_pixel(View view, Fit fit, uvec2 pixel) {
     level_of_lane = level_of_quality;
     SurfacePoint point = surface_at(pixel);
     receiver = at_level(view, project(view, fit, point.position - view.center, point.normal, point.error));
-    kernel = kernels[index];
+    kernel = kernels[first_pixel() + index];
     Cells cells = at_level(Cells(unpacked(kernel.first), unpacked(kernel.last), true));
     kernel.first = packed(cells.first);
     kernel.last = packed(cells.last);
@@ -234,16 +236,16 @@ void integrate_pixels(View view, Fit fit, uvec2 pixel, bool remains) {
 
 void main() {
     find_lanes();
-    View view = views[push.index];
-    Fit fit = fits[push.index];
+    View view = views[view_index()];
+    Fit fit = fits[view_index()];
     uint held = subgroupBallotBitCount(subgroupBallot(true));
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-    uint listed = lists[push.index].packet_count;
+    uint listed = lists[view_index()].packet_count;
     uint entry = group * gl_NumSubgroups + gl_SubgroupID;
     if (entry >= listed) return;
     do {
-        Window window = windows[entry];
+        Window window = windows[first_window() + entry];
         uint count = bitCount(window.penumbra.x) + bitCount(window.penumbra.y);
         uint first = 0u;
         do {

@@ -4,6 +4,7 @@
 // need no integration [SS07; Yang09 alg. 1, step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds
 // every cell that adds to the pixel's integral.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "receiver.glsl"
 #include "quadtree.glsl"
 #include "hierarchy.glsl"
@@ -11,7 +12,6 @@
 #include "shrink.glsl"
 #include "coarse_map.glsl"
 #include "quality.glsl"
-#include "occlusion.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
@@ -24,6 +24,8 @@ writeonly BUFFER(quality);
 BUFFER(counters);
 #include "shadow_map.glsl"
 #include "surface.glsl"
+#include "part_of_view.glsl"
+#include "occlusion.glsl"
 #include "window.glsl"
 #include "rounds.glsl"
 
@@ -42,7 +44,7 @@ bool nothing_occludes(Receiver receiver, Cells cells) {
     uint occluding = 0u;
     for (int y = cells.first.y; y <= cells.last.y + 1; ++y)
         for (int x = cells.first.x; x <= cells.last.x + 1; ++x)
-            occluding += uint(occludes(receiver, vec2(x, y), sample_of(push.index, ivec2(x, y))));
+            occluding += uint(occludes(receiver, vec2(x, y), sample_of(view_index(), ivec2(x, y))));
     return occluding == 0u;
 }
 
@@ -101,7 +103,7 @@ Kernel kernel_at(View view, Tile tile, uvec2 pixel) {
     if (!point.exists || !in_view(view, point.position, point.normal)) return kernel;
     kernel.status = tile.status;
     if (tile.status != KERNEL_PENUMBRA) return kernel;
-    Fit fit = fits[push.index];
+    Fit fit = fits[view_index()];
     float budget = budget_of(index_of(pixel));
     kernel = kernel_of(view, fit, project(view, fit, to_point, point.normal, point.error), budget, tile.depth_max);
     if (BUDGET > 0u && kernel.status == KERNEL_PENUMBRA) choose_quality(index_of(pixel), kernel, budget);
@@ -110,8 +112,8 @@ Kernel kernel_at(View view, Tile tile, uvec2 pixel) {
 
 // Lists pixels of a window, for a subgroup to work off.
 void append_window(Window window) {
-    uint at = atomicAdd(lists[push.index].packet_count, 1u);
-    windows[at] = window;
+    uint at = atomicAdd(lists[view_index()].packet_count, 1u);
+    windows[first_window() + at] = window;
     if (at % gl_NumSubgroups == 0u) reach_packets(0u, at / gl_NumSubgroups);
 }
 
@@ -136,15 +138,15 @@ void list_window(uvec2 place_of_tile, bool is_penumbra) {
 
 void main() {
     uint at = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
-    if (at >= lists[push.index].tile_count) return;
-    Tile tile = tiles[at];
+    if (at >= lists[view_index()].tile_count) return;
+    Tile tile = tiles[first_tile() + at];
     uvec2 pixel = tile.place * TILE_SIZE + gl_LocalInvocationID.xy;
-    View view = views[push.index];
+    View view = views[view_index()];
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
     if (all(lessThan(pixel, frame.size))) {
         uint index = index_of(pixel);
         kernel = kernel_at(view, tile, pixel);
-        kernels[index] = kernel;
+        kernels[first_pixel() + index] = kernel;
         if (kernel.status == KERNEL_UMBRA) add_occluded(index, view.weight);
         if (COUNT) count(kernel.status);
     }

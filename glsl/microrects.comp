@@ -7,6 +7,7 @@
 // No occluding texel is outside of all microrects.
 // DEVIATION [Schwarz08 §5.2]: what is empty has no extent, so that holes of a texel are not filled.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "coarse_map.glsl"
 #include "microrect.glsl"
 
@@ -28,7 +29,7 @@ Rect rect_at(ivec2 at, int level, uint map_size) {
     Rect rect = Rect(0.0, at << level, at << level);
     if (any(greaterThanEqual(uvec2(at), uvec2(side)))) return rect;
     if (level == 0) {
-        rect.depth = sample_of(push.index, at);
+        rect.depth = sample_of(view_index(), at);
         return rect;
     }
     Microrect found = microrects[coarse_index(at, level, map_size)];
@@ -68,11 +69,11 @@ Rect first_pass(ivec2 at, int level, uint map_size, out bvec3 takes) {
 }
 
 void main() {
-    uint map_size = views[push.index].map_size;
+    uint map_size = views[view_index()].map_size;
     int level = int(push.level);
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     // A view without casters is not read.
-    if (fits[push.index].level_count == 0u || any(greaterThanEqual(at, ivec2(coarse_side(level, map_size))))) return;
+    if (fits[view_index()].level_count == 0u || any(greaterThanEqual(at, ivec2(coarse_side(level, map_size))))) return;
     bvec3 takes;
     Rect rect = first_pass(at, level, map_size, takes);
     for (int i = 0; i < 3; ++i) {

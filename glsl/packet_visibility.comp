@@ -5,6 +5,7 @@
 // `sum_kernel` below). Where the pixels see different contours, each gets its own edges, or all of the packet goes to the
 // pixel list; so the image is that of pixel_visibility.comp.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "packet_list.glsl"
 #include "hierarchical_contour.glsl"
 
@@ -83,7 +84,7 @@ void integrate_apart(View view, Cursor cursor) {
 Progress sum_kernel(View view, Packet packet, Progress from, out bool agreed) {
     Edge batch[BATCH];
     [[unroll]] for (uint i = 0u; i < BATCH; ++i) batch[i] = Edge(vec3(0.0), vec3(0.0));
-    Cursor cursor = cursor_at(walk_over(packet, fits[push.index].level_count, from));
+    Cursor cursor = cursor_at(walk_over(packet, fits[view_index()].level_count, from));
     REPEAT_WHILE_PENDING(cursor.more, !at_end(cursor) && (cursor.agreed || !REPROCESS)) {
         uint count = extract_edges(view, packet, cursor, batch);
         integrate(view, batch, count);

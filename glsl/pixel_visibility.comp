@@ -4,6 +4,7 @@
 // found [Yang09 alg. 1, step 8; alg. 3; integration of GBP07]. A pixel is walked for as a packet of its own. The image is
 // that of contour_visibility.comp, which looks into every cell of the kernel.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"
 #include "hierarchical_contour.glsl"
@@ -45,7 +46,7 @@ uint corners_in(Packet packet, ivec2 cell, vec4 depths, out bool agreed) {
 
 Progress sum_kernel(Progress from) {
     Packet packet = packet_of_pixel();
-    Cursor cursor = cursor_at(walk_over(packet, fits[push.index].level_count, from));
+    Cursor cursor = cursor_at(walk_over(packet, fits[view_index()].level_count, from));
     REPEAT_WHILE_PENDING(cursor.more, !at_end(cursor)) {
         bool found = next_edge(pixel.view, packet, cursor);
         float area = edge_beyond(pixel.view, pixel.receiver, edge_at(cursor));

@@ -5,6 +5,7 @@
 // DEVIATION [Schwarz08 §4.2]: a surface ends where it is more than a share of its distance from the light off the planes of its
 // neighbours, not where depth changes: what is seen at a grazing angle goes on.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 layout(constant_id = 54) const bool COLUMNS = false;  // rows otherwise
@@ -40,7 +41,7 @@ float level_at(ivec2 pixel) {
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (!is_penumbra(pixel)) return;
-    View view = views[push.index];
+    View view = views[view_index()];
     float sum = level_at(pixel);
     float count = 1.0;
     for (int way = -1; way <= 1; way += 2) {

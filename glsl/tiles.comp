@@ -3,6 +3,7 @@
 // The tiles of the image that a view has to look at, from their bounds: what is so in all of a tile is decided here, pixels are
 // looked at where they may differ. Never decided wrongly, whatever rounding does. One invocation for each tile.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "receiver.glsl"
 #include "quadtree.glsl"
 #include "hierarchy.glsl"
@@ -18,6 +19,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 
 readonly BUFFER(frame);
+#include "part_of_view.glsl"
 readonly BUFFER(views);
 readonly BUFFER(fits);
 readonly BUFFER(tile_bounds);
@@ -65,12 +67,12 @@ void main() {
     uint columns = (frame.size.x + TILE_SIZE - 1u) / TILE_SIZE;
     uint rows = (frame.size.y + TILE_SIZE - 1u) / TILE_SIZE;
     uint index = gl_WorkGroupID.y * GROUPS_PER_ROW * GROUP_SIZE + gl_GlobalInvocationID.x;
-    Fit fit = fits[push.index];
+    Fit fit = fits[view_index()];
     if (index >= columns * rows || fit.level_count == 0u) return;
     float depth_max;
-    uint status = status_of(views[push.index], fit, tile_bounds[index], depth_max);
+    uint status = status_of(views[view_index()], fit, tile_bounds[index], depth_max);
     if (LEAVES_OUT && status != KERNEL_PENUMBRA && status != KERNEL_UMBRA) return;
-    uint at = atomicAdd(lists[push.index].tile_count, 1u);
-    tiles[at] = Tile(uvec2(index % columns, index / columns), status, depth_max);
+    uint at = atomicAdd(lists[view_index()].tile_count, 1u);
+    tiles[first_tile() + at] = Tile(uvec2(index % columns, index / columns), status, depth_max);
     REACH(lists[push.index].tile_groups, at);
 }

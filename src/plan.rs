@@ -135,9 +135,9 @@ pub fn plan(shot: &Shot, outputs: Outputs, limits: &Limits) -> Result<Plan> {
     };
     let (drafts, found): (Vec<_>, Vec<_>) = shot.lights.iter().map(cover).unzip();
     let inventory = Inventory::of(&shot.scene);
-    plan.add_lights(drafts, &shot.settings, inventory.triangles, limits)?;
+    plan.add_lights(drafts, &shot.settings, &inventory, limits)?;
     plan.note_lights(shot, &found);
-    plan.size_resources(&inventory, &shot.settings, limits);
+    plan.list_resources(&inventory);
     plan.list_omissions(shot);
     plan.check(limits)?;
     Ok(plan)
@@ -187,16 +187,15 @@ impl Plan {
         sets.flat_map(|set| &mut set.views)
     }
 
-    /// Sizes the maps for the lights, gives them their views, and puts their passes in order. `triangles`: that may cast shadows.
+    /// Sizes the maps for the lights, gives them their views, and puts their passes in order.
     fn add_lights(
         &mut self,
         drafts: Vec<Draft>,
         settings: &Settings,
-        triangles: u64,
+        inventory: &Inventory,
         limits: &Limits,
     ) -> Result<()> {
         self.size_map(&drafts, settings, limits)?;
-        self.choose_views_at_once(&drafts, settings, triangles, limits);
         let mut numbering = Numbering::default();
         for (index, draft) in drafts.into_iter().enumerate() {
             let light = draft.finish(index, self.levels, &mut numbering);
@@ -206,6 +205,7 @@ impl Plan {
             let sets = self.lights.iter_mut().flat_map(|light| &mut light.sets);
             sets.for_each(|set| set.recipe.passes.retain(|(pass, _)| !pass.leftovers));
         }
+        self.choose_views_at_once(settings, inventory, limits);
         self.graph = self.ordered();
         Ok(())
     }

@@ -8,6 +8,7 @@ mod draw;
 mod effect;
 mod notes;
 mod pipelines;
+mod recording;
 mod resources;
 mod step;
 
@@ -21,7 +22,7 @@ use crate::plan::{Outputs, Plan, plan};
 use crate::shared::{Costs, Counters, Exposure, Fit};
 use crate::shot::Shot;
 use chain::{Chain, Loans};
-use step::Inputs;
+use recording::Inputs;
 
 pub use costs::{PassCost, static_costs};
 pub use effect::{

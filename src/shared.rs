@@ -314,7 +314,7 @@ shared! {
         depth_max: float,
     }
 
-    /// The dispatches of a view's lists in a round. All zero at the start of a frame.
+    /// The dispatches of the lists of views side by side in a round, kept for the first of them. All zero at the start of a frame.
     struct Round {
         /// VkDispatchIndirectCommand of each list.
         packet_groups: uvec3,
@@ -326,7 +326,7 @@ shared! {
         packet_count: uint,
         pixel_count: uint,
         tile_count: uint,
-        /// VkDispatchIndirectCommand over the tiles.
+        /// VkDispatchIndirectCommand over the tiles of views side by side, kept for the first of them.
         tile_groups: uvec3,
     }
 
@@ -403,8 +403,10 @@ shared! {
 
     /// What a pass is told when it is recorded.
     struct Push {
-        /// Index of the view, or of the light for passes that run per light.
+        /// Index of the view, or of the first of several side by side, or of the light for passes that run per light.
         index: uint,
+        /// [view] From one of the views side by side to the next.
+        stride: uint,
         /// Level of the hierarchy to build, layer to draw, or round in which a list is worked off.
         level: uint,
     }

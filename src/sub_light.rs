@@ -55,7 +55,7 @@ pub fn evenly_spread(count: u32) -> impl Iterator<Item = DVec2> {
 /// Any number does; another scrambles otherwise.
 const SCRAMBLE: u32 = 1;
 
-/// A light's parts, row by row along u. Those that a disc's rim leaves nothing of are left out.
+/// A light's parts, row by row along u; of a disc those first that its rim does not cut. Those that a disc's rim leaves nothing of are left out.
 /// A light without extent has one part without extent.
 pub fn parts(light: &AreaLight, split: u32) -> Vec<Part> {
     match light.is_round() {
@@ -81,9 +81,10 @@ fn parts_of_disc(split: u32) -> Arc<[Part]> {
     static FOUND: Mutex<BTreeMap<u32, Arc<[Part]>>> = Mutex::new(BTreeMap::new());
     let mut found = FOUND.lock().unwrap_or_else(PoisonError::into_inner);
     let find = || {
-        grid(split)
-            .filter_map(|middle| Part::of_disc(middle, f64::from(split)))
-            .collect()
+        let parts = grid(split).filter_map(|middle| Part::of_disc(middle, f64::from(split)));
+        let mut parts: Vec<Part> = parts.collect();
+        parts.sort_by_key(|part| part.rim.is_some());
+        parts.into()
     };
     found.entry(split).or_insert_with(find).clone()
 }

@@ -175,6 +175,12 @@ pub struct Recipe {
 }
 
 impl Recipe {
+    /// Whether views are looked at side by side, where their maps are made so: they list what they look at, and need nothing else of
+    /// their own.
+    pub fn side_by_side(&self) -> bool {
+        self.windows && self.coarse_levels == 0
+    }
+
     /// `settings`: as they run for the light ([`Settings::of_light`]).
     pub fn new(settings: &Settings) -> Self {
         settings.technique.method().recipe(settings)

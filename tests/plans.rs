@@ -144,6 +144,47 @@ fn settings_change_what_runs() {
     check("plate-packet-1x1", &pixels, EVERYTHING, false);
 }
 
+/// What a view alone is too small for is done for several at once, of several faces and of sub-lights that a rim cuts or does not; on a
+/// CPU view by view, and where layers are peeled.
+#[test]
+fn a_gpu_looks_at_several_views_at_once() {
+    let gpu = Limits {
+        is_cpu: false,
+        loop_turns: Limits::ENDLESS_LOOPS,
+        ..LIMITS
+    };
+    let planned = |name, limits: &Limits| {
+        let plan = plan(&scene(name), EVERYTHING, limits).expect("a plan");
+        (
+            plan.views_at_once,
+            plan.steps().count(),
+            plan.memory_bytes(),
+        )
+    };
+    for (name, views, steps) in [("knot", 6, 45), ("colonnade", 8, 70)] {
+        let (one, all_steps, one_bytes) = planned(name, &LIMITS);
+        let (several, fewer_steps, bytes) = planned(name, &gpu);
+        assert_eq!((one, several), (1, views), "{name}");
+        assert!(
+            all_steps > 4 * fewer_steps && fewer_steps <= steps,
+            "{name}: {fewer_steps} steps"
+        );
+        assert!(bytes <= one_bytes + (64 << 20), "{name}: {bytes} bytes");
+    }
+    let peeled = with(scene("plate"), |settings| {
+        settings.technique = Technique::DepthPeeling;
+        settings.layers = 4;
+        settings.views_at_once = Some(4);
+    });
+    let plan = plan(&peeled, EVERYTHING, &gpu).expect("a plan");
+    assert_eq!(plan.views_at_once, 1);
+    assert!(
+        plan.notes
+            .iter()
+            .any(|note| note.contains("--views-at-once"))
+    );
+}
+
 /// Local packets leave nothing over where a driver lets loops run.
 #[test]
 fn what_drivers_leave_over_is_planned_for_such_drivers_alone() {

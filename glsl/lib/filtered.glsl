@@ -2,7 +2,6 @@
 // defines two functions, `hidden_share` and `samples_read_by_pixel`; the rest is here.
 
 #include "receiver.glsl"
-#include "occlusion.glsl"
 #include "count.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
@@ -13,6 +12,8 @@ readonly BUFFER(fits);
 #include "shadow_map.glsl"
 
 #include "surface.glsl"
+#include "part_of_view.glsl"
+#include "occlusion.glsl"
 
 // [0, 1] Share of the sub-light that the technique holds for hidden.
 float hidden_share(View view, Fit fit, uvec2 pixel, Receiver receiver);
@@ -24,14 +25,14 @@ uint samples_read_by_pixel();
 float nearest_depth(View view, vec2 t) {
     ivec2 texel = ivec2(floor(clamp(t, vec2(-2.0), vec2(view.map_size + 1u)) + 0.5));
     if (any(greaterThanEqual(uvec2(texel), uvec2(view.map_size)))) return 0.0;
-    return sample_of(push.index, texel);
+    return sample_of(view_index(), texel);
 }
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size))) return;
-    View view = views[push.index];
-    Fit fit = fits[push.index];
+    View view = views[view_index()];
+    Fit fit = fits[view_index()];
     SurfacePoint point = surface_at(pixel);
     vec3 to_point = point.position - view.center;
     bool looked_at = point.exists && in_view(view, point.position, point.normal) && fit.level_count > 0u;

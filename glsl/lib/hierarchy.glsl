@@ -9,7 +9,7 @@ TEXTURE(hierarchy);
 
 // Depth bounds of the node of a level that holds a cell and begins at it or before it.
 vec2 hierarchy_fetch(View view, ivec2 cell, int level) {
-    return texelFetch(hierarchy, node_at(view, slot_of(push.index), cell, level), 0).xy;
+    return texelFetch(hierarchy, node_at(view, slot_of(view_index()), cell, level), 0).xy;
 }
 
 // Depth bounds over the cells first … last (inclusive, inside the map), from nodes of one level that cover them and may

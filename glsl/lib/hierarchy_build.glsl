@@ -1,5 +1,5 @@
-// Levels of the hierarchy over the shadow map (hierarchy.glsl): levels 0 and 1 at once from the samples at the corners of their
-// cells, every other one from four nodes of the one below. Who includes it says in which format bounds are stored,
+// Levels of the hierarchy over the shadow map (hierarchy.glsl), two at once: levels 0 and 1 from the samples at the corners of their
+// cells, every other pair from 4 and from 16 nodes of the level below. Who includes it says in which format bounds are stored,
 // BOUNDS_FORMAT, and how they get there, `vec2 stored(vec2 bounds)`.
 #include "pass.glsl"
 #include "side_by_side.glsl"
@@ -28,31 +28,39 @@ void store(View view, ivec2 cell, int level, vec2 bounds) {
     imageStore(hierarchy, node_at(view, slot_of(view_index()), cell, level), vec4(stored(bounds), 0.0, 0.0));
 }
 
-// A cell, and the node of level 1 that begins at it, if one does.
-void build_lowest(View view, ivec2 cell) {
+// Level 0 from samples, whose corners cells share: a node has one more along a side than cells.
+void build_lowest(View view, ivec2 cell, bool next) {
     vec2 bounds = vec2(1e30, 0.0);
     [[unroll]] for (int i = 0; i < 4; ++i) bounds = joined(bounds, sample_at(cell + ivec2(i & 1, i >> 1), int(view.map_size)));
     store(view, cell, 0, bounds);
-    if (view.levels_max == 1u || aligned(cell, 1) != cell) return;
+    if (!next) return;
     [[unroll]] for (int i = 0; i < 3; ++i) bounds = joined(bounds, sample_at(cell + ivec2(2, i), int(view.map_size)));
     [[unroll]] for (int i = 0; i < 2; ++i) bounds = joined(bounds, sample_at(cell + ivec2(i, 2), int(view.map_size)));
     store(view, cell, 1, bounds);
 }
 
-void build(View view, ivec2 cell, int level) {
-    int half_side = 1 << (level - 1);
+void build(View view, ivec2 cell, int level, bool next) {
+    int side = 1 << (level - 1);
     vec2 bounds = vec2(1e30, 0.0);
     [[unroll]] for (int i = 0; i < 4; ++i)
-        bounds = joined(bounds, node_below(view, cell + ivec2(i & 1, i >> 1) * half_side, level));
+        bounds = joined(bounds, node_below(view, cell + ivec2(i & 1, i >> 1) * side, level));
     store(view, cell, level, bounds);
+    if (!next) return;
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+        ivec2 at = ivec2(i & 3, i >> 2);
+        if (max(at.x, at.y) > 1) bounds = joined(bounds, node_below(view, cell + at * side, level));
+    }
+    store(view, cell, level + 1, bounds);
 }
 
 void main() {
     View view = views[view_index()];
     int level = int(push.level);
-    if (push.level >= fits[view_index()].level_count) return;
+    uint level_count = fits[view_index()].level_count;
     ivec2 cell = ivec2(gl_GlobalInvocationID.xy) << spacing_log2(level);
-    if (any(greaterThanEqual(cell, ivec2(covered_side(view))))) return;
-    if (level == 0) build_lowest(view, cell);
-    else build(view, cell, level);
+    if (push.level >= level_count || any(greaterThanEqual(cell, ivec2(covered_side(view))))) return;
+    // A node of the next level that begins at the cell is built beside.
+    bool next = push.level + 1u < level_count && aligned(cell, level + 1) == cell;
+    if (level == 0) build_lowest(view, cell, next);
+    else build(view, cell, level, next);
 }

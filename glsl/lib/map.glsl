@@ -9,7 +9,7 @@ TEXTURE(layers);
 float depth_at(uint layer, ivec2 texel) {
     float depth = 0.0;
     if (reads_coarse_map()) depth = coarse_texel(texel, level_of_quality).y;
-    else depth = LAYERS > 1u ? texelFetch(layers, ivec3(texel, layer), 0).x : sample_of(push.index, texel);
+    else depth = LAYERS > 1u ? texelFetch(layers, ivec3(texel, layer), 0).x : sample_of(view_index(), texel);
     return depth;
 }
 

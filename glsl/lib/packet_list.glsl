@@ -9,7 +9,6 @@
 #include "contour.glsl"
 #include "map.glsl"
 #include "resume.glsl"
-#include "occlusion.glsl"
 #include "count.glsl"
 #include "radial.glsl"
 #include "blend.glsl"
@@ -25,6 +24,8 @@ BUFFER(packets);
 BUFFER(pixels);
 
 #include "surface.glsl"
+#include "part_of_view.glsl"
+#include "occlusion.glsl"
 #include "packet_grid.glsl"
 #include "list_append.glsl"
 
@@ -131,13 +132,13 @@ void main() {
     uint entry = group * packets_per_group() + in_group;
     // Each lane has a progress of its own: they may be out of budget at different nodes.
     uint at = entry * PACKET_LANES + lane;
-    if (in_group >= packets_per_group() || entry >= lists[push.index].packet_count) return;
+    if (in_group >= packets_per_group() || entry >= lists[view_index()].packet_count) return;
     if (is_finished(at)) return;
-    View view = views[push.index];
+    View view = views[view_index()];
     Packet packet = packets[entry];
     uvec2 place = uvec2(packet.index % packet_grid().x, packet.index / packet_grid().x);
     choose_level(view, place);
-    if (!keep_pixels(view, fits[push.index], place, lane)) return;
+    if (!keep_pixels(view, fits[view_index()], place, lane)) return;
     packet = at_level(view, packet);
 
     bool agreed;

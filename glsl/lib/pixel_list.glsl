@@ -6,7 +6,6 @@
 #include "contour.glsl"
 #include "map.glsl"
 #include "resume.glsl"
-#include "occlusion.glsl"
 #include "count.glsl"
 #include "blend.glsl"
 
@@ -20,6 +19,8 @@ readonly BUFFER(lists);
 readonly BUFFER(pixels);
 
 #include "surface.glsl"
+#include "part_of_view.glsl"
+#include "occlusion.glsl"
 
 // The pixel that this invocation works on, at the level of quality that the pass reads.
 struct ListedPixel {
@@ -47,11 +48,12 @@ Progress sum_kernel(Progress from);
 float hidden_share();
 
 ListedPixel listed_pixel(uint index) {
-    View view = views[push.index];
+    View view = views[view_index()];
     choose_level(view, index);
     SurfacePoint point = surface_at(pixel_at(index));
-    Receiver receiver = project(view, fits[push.index], point.position - view.center, point.normal, point.error);
-    Cells cells = at_level(Cells(unpacked(kernels[index].first), unpacked(kernels[index].last), true));
+    Receiver receiver = project(view, fits[view_index()], point.position - view.center, point.normal, point.error);
+    Kernel kernel = kernels[first_pixel() + index];
+    Cells cells = at_level(Cells(unpacked(kernel.first), unpacked(kernel.last), true));
     return ListedPixel(index, view, at_level(view, receiver), cells.first, cells.last);
 }
 
@@ -67,15 +69,15 @@ bool is_for_pass(inout uint entry) {
 void main() {
     uint group = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     uint entry = group * GROUP_SIZE + gl_LocalInvocationID.x;
-    if (entry >= lists[push.index].pixel_count) return;
-    if (is_finished(entry)) return;
-    uint listed = pixels[entry];
-    if (!is_for_pass(listed)) return;
+    if (entry >= lists[view_index()].pixel_count) return;
+    uint place = first_pixel() + entry;
+    uint listed = pixels[place];
+    if (is_finished(place) || !is_for_pass(listed)) return;
     pixel = listed_pixel(listed);
-    uint first_word = pixel.index * SUM_WORDS;
+    uint first_word = (first_pixel() + pixel.index) * SUM_WORDS;
     for (uint i = 0u; i < SUM_WORDS; ++i) sum[i] = is_first_round() ? SUM(0) : partial[first_word + i];
 
-    Progress next = sum_kernel(resumed(entry));
+    Progress next = sum_kernel(resumed(place));
 
     bool complete = next.next == FINISHED;
     if (complete) {
@@ -85,9 +87,9 @@ void main() {
         reach_pixels(push.level + 1u, group);
     } else {
         // There is no further round: the frame fails.
-        atomicAdd(fits[push.index].unfinished, 1u);
+        atomicAdd(fits[view_index()].unfinished, 1u);
         next = ENDED;
     }
-    keep_progress(entry, next);
+    keep_progress(place, next);
     if (COUNT) count_work();
 }

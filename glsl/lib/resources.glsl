@@ -80,6 +80,7 @@
 #define RESOURCE_partial ARRAY(37, SUM, partial)
 #define RESOURCE_sectors ARRAY(38, float, sectors)
 #define RESOURCE_occlusion ARRAY(39, float, occlusion)
+#define RESOURCE_occluded_by_view ARRAY(66, float, occluded_by_view)
 #define RESOURCE_visibility ARRAY(40, float, visibility)
 
 // The picture.

@@ -1,3 +1,3 @@
-// A dispatch over views side by side: the work groups of one z are one view's.
+// A dispatch over views side by side (plan/side_by_side.rs): the work groups of one z are for one view.
 
-uint view_index() { return push.index + gl_WorkGroupID.z; }
+uint view_index() { return push.index + gl_WorkGroupID.z * push.stride; }

@@ -4,6 +4,7 @@
 // back-projection sets the bits of the light samples that it hides [SS07]. A sample is hidden once, however many quads
 // hide it; visibility has as many steps as there are samples. Micropatches or microrects may take the quads' place [Schwarz08 §5].
 #include "pass.glsl"
+#include "side_by_side.glsl"
 
 layout(constant_id = 17) const uint LIGHT_SAMPLES = 8u;   // a side of the bitmask
 layout(constant_id = 18) const bool JITTERED = false;     // light samples stand anywhere in their strata

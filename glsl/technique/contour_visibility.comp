@@ -3,6 +3,7 @@
 // Visibility of the pixel list's pixels from the contour in every dual cell of their kernels [GBP07, as re-implemented in
 // Yang09 §6]. Right for all occluders that the centre of the sub-light sees, but for those that overlap on the light.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"
 #include "scan.glsl"

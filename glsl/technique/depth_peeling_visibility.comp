@@ -4,6 +4,7 @@
 // layers' occluders hide add up, micropatches or contours. What the first layer hides from the light's centre is not missed;
 // what two layers hide counts twice.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"
 #include "scan.glsl"

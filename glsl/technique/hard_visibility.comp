@@ -3,6 +3,7 @@
 // Hard shadows: the nearest sample decides [Williams78], or the mean of the tests of its neighbourhood (percentage-closer
 // filtering by Reeves, Salesin and Cook 1987). Right for a light without extent.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "filtered.glsl"
 
 layout(constant_id = 21) const int FILTER_REACH = 0;  // [texel] of the percentage-closer filter

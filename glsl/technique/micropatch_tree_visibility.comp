@@ -3,6 +3,7 @@
 // Visibility of the pixel list's pixels from the back-projected texels of their kernels, found by a walk through the
 // hierarchy that prunes what holds no occluder [DU07]. It finds the patches that micropatch_visibility.comp finds.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"
 #include "micropatch.glsl"
@@ -33,7 +34,7 @@ Progress sum_kernel(Progress from) {
     ivec2 first = pixel.first;
     ivec2 last = pixel.last + 1;
     ivec2 side = last - first + 1;
-    int top = min(level_covering(max(side.x, side.y)), int(fits[push.index].level_count) - 1);
+    int top = min(level_covering(max(side.x, side.y)), int(fits[view_index()].level_count) - 1);
     Walk walk = walk_from(aligned(first, top), top);
     if (!is_first_round()) walk = resumed_walk(from, top);
     REPEAT_WHILE(!walk.ended) {

@@ -3,6 +3,7 @@
 // Visibility of the pixel list's pixels from the back-projected texels of their kernels [GBP06]: the patches' areas add up,
 // with what leaks between them and what they hide twice. In coarser levels microrects may take their place [Schwarz08 §5.2].
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "pixel_list.glsl"
 #include "radial.glsl"
 #include "scan.glsl"

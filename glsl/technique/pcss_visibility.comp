@@ -3,6 +3,7 @@
 // Percentage-closer soft shadows [Fernando05]: the mean depth of the blockers found around the pixel's projection
 // tells how wide to filter. In [0, 1], and the same in every frame; the penumbra is a guess.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "filtered.glsl"
 
 layout(constant_id = 19) const uint BLOCKER_SAMPLES = 1u;  // of the blocker search

@@ -4,6 +4,7 @@
 // light to its micropatch, were all as far away as the farthest of them. That one is looked up in the receiver pyramid: of all
 // texels first, then of the extent that follows from it. `push.level`: 0 = the occluder map, 1 = the map of bottoms.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "bounds.glsl"
 #include "count.glsl"
 #include "casting.glsl"
@@ -61,12 +62,12 @@ uvec2 extent_of(View view, Fit fit, ivec2 texel, float depth) {
 }
 
 void main() {
-    View view = views[push.index];
-    Fit fit = fits[push.index];
+    View view = views[view_index()];
+    Fit fit = fits[view_index()];
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, ivec2(view.map_size)))) return;
     float bottom = farthest_of(texelFetch(bottom_map, texel, 0).x);
-    float depth = push.level == 0u ? sample_of(push.index, texel) : bottom;
+    float depth = push.level == 0u ? sample_of(view_index(), texel) : bottom;
     uvec2 extent = fit.level_count > 0u && depth > 0.0 ? extent_of(view, fit, texel, depth) : NO_EXTENT;
     penumbra_extents[uint(texel.y) * view.map_size + uint(texel.x)] = extent;
     if (COUNT && extent != NO_EXTENT) {

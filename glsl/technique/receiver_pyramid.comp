@@ -3,6 +3,7 @@
 // A level of the receiver pyramid (receiver_pyramid.glsl): level 1 from 2×2 texels of the receiver map, every other level from 2×2
 // nodes of the one below. The farthest is beyond all depths and the nearest 0 where there is no receiver.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "receiver_pyramid.glsl"
 #include "bounds.glsl"
 #include "casting.glsl"
@@ -30,11 +31,11 @@ vec2 below(ivec2 node, int level, uint map_size) {
 }
 
 void main() {
-    uint map_size = views[push.index].map_size;
+    uint map_size = views[view_index()].map_size;
     int level = int(push.level);
     ivec2 node = ivec2(gl_GlobalInvocationID.xy);
     // A view without casters is not read.
-    if (fits[push.index].level_count == 0u || any(greaterThanEqual(node, ivec2(pyramid_side(level, map_size))))) return;
+    if (fits[view_index()].level_count == 0u || any(greaterThanEqual(node, ivec2(pyramid_side(level, map_size))))) return;
     vec2 bounds = NOTHING;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         vec2 child = below(2 * node + ivec2(i & 1, i >> 1), level - 1, map_size);

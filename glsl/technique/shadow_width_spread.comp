@@ -6,6 +6,7 @@
 // DEVIATION [Kirsch03 §4]: what a neighbour adds is the length of the way, for texels are not square and neighbours at 60° lie on
 // no grid.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "shadow_width.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
@@ -48,8 +49,8 @@ vec2 nearest(View view, Fit fit, ivec2 texel) {
 }
 
 void main() {
-    View view = views[push.index];
-    Fit fit = fits[push.index];
+    View view = views[view_index()];
+    Fit fit = fits[view_index()];
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (fit.level_count == 0u || !in_map(texel, view.map_size)) return;
     vec2 found = FLOOD ? nearest(view, fit, texel) : least(view, fit, texel);

@@ -3,6 +3,7 @@
 // Shadows of a single light sample [Kirsch03]: a hidden pixel is the brighter the nearer its projection is to a texel that
 // nothing hides, and the farther its occluder is. Pixels that the light's centre sees are lit: the inner penumbra alone.
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "filtered.glsl"
 #include "shadow_width.glsl"
 #include "bottom_map.glsl"

@@ -4,6 +4,7 @@
 // not lie before. A pixel before all of them is on an occluder, which receives no shadow. Of two maps, that of the occluders'
 // tops and that of their bottoms, the darker counts [Atty06 §3.5].
 #include "pass.glsl"
+#include "side_by_side.glsl"
 #include "bounds.glsl"
 #include "casting.glsl"
 #include "filtered.glsl"

@@ -16,10 +16,11 @@ pub struct Step {
 pub enum Scope {
     Frame,
     Light(u32),
-    /// Views side by side, from the first on.
+    /// Views side by side, each so many on from the one before.
     Views {
         first: u32,
         count: u32,
+        stride: u32,
     },
 }
 
@@ -28,23 +29,27 @@ impl Scope {
         Self::Views {
             first: view,
             count: 1,
+            stride: 1,
         }
     }
 
     /// View by view, if it has views.
     pub fn each(self) -> impl Iterator<Item = Self> {
-        let (views, other) = match self {
-            Self::Frame | Self::Light(_) => (0..0, Some(self)),
-            Self::Views { first, count } => (first..first + count, None),
+        let count = match self {
+            Self::Frame | Self::Light(_) => 1,
+            Self::Views { count, .. } => count,
         };
-        views.map(Self::view).chain(other)
+        (0..count).map(move |index| match self {
+            Self::Frame | Self::Light(_) => self,
+            Self::Views { first, stride, .. } => Self::view(first + index * stride),
+        })
     }
 
     /// Whether it is done for a view, alone or beside others.
     pub fn has_view(self, view: u32) -> bool {
         match self {
             Self::Frame | Self::Light(_) => false,
-            Self::Views { first, count } => (first..first + count).contains(&view),
+            Self::Views { .. } => self.each().any(|scope| scope == Self::view(view)),
         }
     }
 }

@@ -11,7 +11,10 @@ use crate::shared::{
 /// Most windows of a tile.
 const WINDOWS_PER_TILE: u64 = (TILE_SIZE * TILE_SIZE / WINDOW_PIXELS_MIN) as u64;
 
-const CLEAR_LISTS: Pass = Pass::new("clear_lists", Work::Clear(&["lists", "rounds"]));
+const CLEAR_LISTS: Pass = Pass::new(
+    "clear_lists",
+    Work::Clear(&["lists", "rounds", "occluded_by_view"]),
+);
 
 /// Bounds of what is visible in each tile.
 const TILE_BOUNDS: Pass = Pass::dispatch("tile_bounds", "tile_bounds.comp", Domain::Image);
@@ -53,16 +56,27 @@ pub fn first_passes(has_lists: bool, budgets_vary: bool) -> impl Iterator<Item =
     first.iter().copied().chain(budgets)
 }
 
+/// What views side by side have found.
+pub const ADD_UP: Pass = Pass::dispatch("add_up", "add_up.comp", Domain::Image);
+
 pub const RESOURCES: &[Resource] = &[
     Resource::new("tile_bounds", |s| {
         Shape::array::<TileBounds>(s.tiles()).when(s.kernels)
     }),
-    Resource::new("tiles", |s| Shape::array::<Tile>(s.tiles()).when(s.kernels)),
+    Resource::new("tiles", |s| {
+        Shape::array::<Tile>(s.tiles())
+            .times(s.looked_at_once)
+            .when(s.kernels)
+    }),
     Resource::new("kernels", |s| {
-        Shape::array::<Kernel>(s.pixels()).when(s.kernels)
+        Shape::array::<Kernel>(s.pixels())
+            .times(s.looked_at_once)
+            .when(s.kernels)
     }),
     Resource::new("windows", |s| {
-        Shape::array::<Window>(s.tiles() * WINDOWS_PER_TILE).when(s.windows)
+        Shape::array::<Window>(s.tiles() * WINDOWS_PER_TILE)
+            .times(s.looked_at_once)
+            .when(s.windows)
     }),
     Resource::new("packets", |s| {
         Shape::array::<Packet>(s.packets()).when(s.packet_lists)
@@ -74,7 +88,9 @@ pub const RESOURCES: &[Resource] = &[
         } else {
             1
         };
-        Shape::array::<u32>(s.pixels() * each).when(s.pixel_lists)
+        Shape::array::<u32>(s.pixels() * each)
+            .times(s.looked_at_once)
+            .when(s.pixel_lists)
     }),
     Resource::new("budgets", |s| {
         Shape::array::<f32>(s.pixels()).when(s.budgets_vary)
@@ -97,10 +113,19 @@ pub const LIST_RESOURCES: &[Resource] = &[
         Shape::array::<Round>(s.lists() * u64::from(s.rounds))
     }),
     Resource::new("partial", |s| {
-        Shape::array::<u32>(s.pixels() * u64::from(s.words)).when(s.rounds > 1)
+        Shape::array::<u32>(s.pixels() * u64::from(s.words))
+            .times(s.looked_at_once)
+            .when(s.rounds > 1)
     }),
     Resource::new("progress", |s| {
-        Shape::array::<Progress>(entries(s)).when(s.rounds > 1 && s.words > 0)
+        Shape::array::<Progress>(entries(s))
+            .times(s.looked_at_once)
+            .when(s.rounds > 1 && s.words > 0)
+    }),
+    Resource::new("occluded_by_view", |s| {
+        Shape::array::<f32>(s.pixels())
+            .times(s.looked_at_once)
+            .when(s.looked_at_once > 1)
     }),
 ];
 

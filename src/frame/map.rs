@@ -82,7 +82,7 @@ const KEEP_LAYER: Pass = Pass::new(
 )
 .lasting();
 
-/// A level of the hierarchy over the map.
+/// Two levels of the hierarchy over the map.
 const HIERARCHY: Pass = building("hierarchy.comp");
 const HIERARCHY_16: Pass = building("hierarchy_16.comp");
 
@@ -164,15 +164,14 @@ pub fn drawing_pass(casters: Casters) -> Pass {
     }
 }
 
-/// What builds the hierarchies over views' maps, each pass with the level that it makes.
+/// What builds the hierarchies over views' maps, each pass with the lower of the two levels that it makes.
 pub fn hierarchy_passes(structures: Structures) -> impl Iterator<Item = (Pass, u32)> {
     let hierarchy = match structures.bounds_bits {
         16 => HIERARCHY_16,
         _ => HIERARCHY,
     };
-    // The lowest two are built at once.
-    let built = (0..structures.levels).filter(|&level| level != 1);
-    built.map(move |level| (hierarchy, level))
+    let lower_of_two = (0..structures.levels).step_by(2);
+    lower_of_two.map(move |level| (hierarchy, level))
 }
 
 /// What else is made of a view's map, each pass with the level or layer that it makes.

@@ -67,7 +67,7 @@ pub enum Domain {
     PacketList,
     /// The view's list of single pixels, in rounds.
     PixelList,
-    /// The nodes of a level of the hierarchy over the map, if the view needs it.
+    /// The nodes of a level of the hierarchy over the map, if a view needs it.
     HierarchyLevel,
     /// The nodes of a level of a pyramid over a map of the view, from 1 up.
     PyramidLevel,

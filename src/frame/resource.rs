@@ -61,6 +61,8 @@ pub struct Sizes {
     pub density: Density,
     /// [slot] For views whose maps are made side by side.
     pub views_at_once: u32,
+    /// Of these, views that are looked at side by side.
+    pub looked_at_once: u32,
     /// [layer] Of the shadow map that are kept.
     pub layers: u32,
     /// [level] Coarser than the map that are kept; 0 = no budget limits quality.

@@ -1,5 +1,7 @@
 //! The passes of a frame, in the order in which they are recorded.
 
+use std::ops::Range;
+
 use super::{Plan, ViewSet};
 use crate::frame::{Graph, Scope, Step, back, counts, front, kernel, map};
 use crate::technique::Recipe;
@@ -22,13 +24,9 @@ impl Plan {
         for (index, light) in self.lights.iter().enumerate() {
             let scope = Scope::Light(index as u32);
             graph.add(scope, back::first_passes(light.accumulates()));
-            let mut view = light.light.view_first;
             for set in &light.sets {
-                let end = view + set.views.len() as u32;
-                while view < end {
-                    let count = self.views_at_once.min(end - view);
-                    self.add_views(&mut graph, set, view, count);
-                    view += count;
+                for views in self.side_by_side(set) {
+                    self.add_views(&mut graph, set, views);
                 }
             }
             graph.add(scope, back::light_passes());
@@ -40,16 +38,27 @@ impl Plan {
         graph
     }
 
-    /// Views of a set whose maps are made side by side; then what reads them, view by view.
-    fn add_views(&self, graph: &mut Graph, set: &ViewSet, first: u32, count: u32) {
+    /// Views of a set whose maps are made side by side; then what reads them, side by side as well or view by view.
+    fn add_views(&self, graph: &mut Graph, set: &ViewSet, views: Range<u32>) {
         let structures = self.structures(&set.recipe);
-        let all = Scope::Views { first, count };
+        let all = Scope::Views {
+            first: views.start,
+            count: views.len() as u32,
+            stride: 1,
+        };
         graph.add(all, map::fitting_passes(self.casters));
         graph.add(all, [map::drawing_pass(self.casters)]);
         graph.add_levels(all, map::hierarchy_passes(structures));
+        let passes = || set.recipe.passes.iter().copied();
+        if self.looks_side_by_side(&set.recipe) {
+            for scope in set.of_each_face(views) {
+                graph.add_levels(scope, passes());
+            }
+            return graph.add(all, [kernel::ADD_UP]);
+        }
         for view in all.each() {
             graph.add_levels(view, map::structure_passes(structures));
-            graph.add_levels(view, set.recipe.passes.iter().copied());
+            graph.add_levels(view, passes());
         }
     }
 

@@ -111,18 +111,18 @@ pub fn plan_for_host(host: &HostFrame, limits: &Limits) -> Result<Plan> {
     let parts = technique::parts(&host.light, &settings.of_light(&host.light));
     let found = vec![found; host.light.side_count()];
     let draft = Draft::new(settings, placed(&host.light), parts, &found);
-    plan.add_lights(vec![draft], settings, host.triangles.into(), limits)?;
-    if host.casters == Casters::Maps {
-        // A host's map may be turned any way.
-        plan.views_mut().for_each(|view| view.oblique = true);
-    }
     let inventory = Inventory {
         vertices: host.vertices.into(),
         triangles: host.triangles.into(),
         instances: host.instances.into(),
         ..Inventory::default()
     };
-    plan.size_resources(&inventory, settings, limits);
+    plan.add_lights(vec![draft], settings, &inventory, limits)?;
+    if host.casters == Casters::Maps {
+        // A host's map may be turned any way.
+        plan.views_mut().for_each(|view| view.oblique = true);
+    }
+    plan.list_resources(&inventory);
     plan.check(limits)?;
     Ok(plan)
 }

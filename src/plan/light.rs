@@ -31,6 +31,8 @@ pub struct ViewSet {
     /// As they run in its views.
     pub settings: Settings,
     pub recipe: Recipe,
+    /// [view] The number of its first.
+    pub view_first: u32,
     /// Part by part, each towards the same faces.
     pub views: Vec<ViewPlan>,
 }
@@ -140,12 +142,6 @@ pub(super) struct DraftSet {
     poses: Vec<ViewPose>,
 }
 
-impl DraftSet {
-    pub fn view_count(&self) -> u32 {
-        self.poses.len() as u32
-    }
-}
-
 /// What has been given away to the lights before.
 #[derive(Default)]
 pub(super) struct Numbering {
@@ -201,6 +197,7 @@ impl<'a> Draft<'a> {
         let (placed, view_first) = (self.placed, numbering.views);
         let set = |set: DraftSet| {
             let params = placed.map_params(&set.settings, levels);
+            let first = numbering.views;
             let view = |pose: ViewPose| {
                 let sectors = pose.sectors();
                 let view = pose.view(&params, placed.light, numbering.sectors);
@@ -214,6 +211,7 @@ impl<'a> Draft<'a> {
                 }
             };
             ViewSet {
+                view_first: first,
                 views: set.poses.into_iter().map(view).collect(),
                 recipe: set.recipe,
                 settings: set.settings,

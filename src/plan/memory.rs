@@ -22,6 +22,13 @@ impl PlannedResource {
     }
 }
 
+/// [byte] Of resources and of the largest copy that goes to the device or comes back.
+pub(super) fn peak_bytes(resources: &[PlannedResource]) -> u64 {
+    let copied = resources.iter().filter(|resource| resource.copied);
+    let all: u64 = resources.iter().map(PlannedResource::bytes).sum();
+    all + copied.map(PlannedResource::bytes).max().unwrap_or(0)
+}
+
 /// All resources that some frame has, in the order of plans; those of its techniques before the back.
 fn declared(techniques: Vec<Resource>) -> impl Iterator<Item = Resource> {
     let shared = [
@@ -41,13 +48,22 @@ fn declared(techniques: Vec<Resource>) -> impl Iterator<Item = Resource> {
 
 impl Plan {
     pub(super) fn list_resources(&mut self, inventory: &Inventory) {
-        let sizes = self.sizes(*inventory);
+        self.resources = self.resources_for(self.views_at_once, inventory);
+    }
+
+    /// The resources of a frame that makes the maps of so many views at once.
+    pub(super) fn resources_for(
+        &self,
+        views_at_once: u32,
+        inventory: &Inventory,
+    ) -> Vec<PlannedResource> {
+        let sizes = self.sizes(views_at_once, *inventory);
         let planned = |resource: Resource| PlannedResource {
             name: resource.name,
             shape: (resource.shape)(&sizes),
             copied: resource.copied,
         };
-        self.resources = declared(self.of_techniques()).map(planned).collect();
+        declared(self.of_techniques()).map(planned).collect()
     }
 
     /// What the lights' techniques have for themselves, each once.
@@ -61,7 +77,7 @@ impl Plan {
         found
     }
 
-    fn sizes(&self, inventory: Inventory) -> Sizes {
+    fn sizes(&self, views_at_once: u32, inventory: Inventory) -> Sizes {
         let most = |of: fn(&Recipe) -> u32| self.sets().map(|set| of(&set.recipe)).max();
         let tables = self.views().filter(|view| view.sectors.is_some());
         Sizes {
@@ -82,7 +98,11 @@ impl Plan {
             bounds_bits: self.bounds_bits,
             levels: self.levels,
             density: self.density,
-            views_at_once: self.views_at_once,
+            views_at_once,
+            looked_at_once: match self.needs(Recipe::side_by_side) {
+                true => views_at_once,
+                false => 1,
+            },
             layers: most(|recipe| recipe.layers).unwrap_or(0),
             coarse_levels: most(|recipe| recipe.coarse_levels).unwrap_or(0),
             microrects: self.needs(|recipe| recipe.microrects),
@@ -120,8 +140,7 @@ impl Plan {
 
     /// [byte] Of all resources and of the largest copy that goes to the device or comes back.
     pub fn peak_bytes(&self) -> u64 {
-        let copied = self.resources.iter().filter(|resource| resource.copied);
-        self.memory_bytes() + copied.map(PlannedResource::bytes).max().unwrap_or(0)
+        peak_bytes(&self.resources)
     }
 
     pub(super) fn check(&self, limits: &Limits) -> Result<()> {

@@ -1,70 +1,107 @@
-//! How many views have their maps made side by side: receivers, casters, projections and hierarchies of all of them in one dispatch
-//! each. On a device with thousands of lanes a view alone fills few, and each dispatch waits for the one before.
+//! Views side by side: their receivers, casters, projections and hierarchies in one dispatch each, and with local packets what looks at
+//! them as well. On a device with thousands of lanes a view alone fills few, and each dispatch waits for the one before.
 
-use super::Plan;
-use super::light::Draft;
+use std::ops::Range;
+
 use super::maps::fits;
-use crate::frame::map::{self, CASTER_BYTES};
-use crate::frame::{Inventory, Shape};
+use super::memory::peak_bytes;
+use super::{Plan, ViewPlan, ViewSet};
+use crate::frame::{Inventory, Scope};
 use crate::gpu::Limits;
-use crate::technique::Settings;
+use crate::technique::{Recipe, Settings};
 
-/// [byte] That maps side by side take by default, beside the first.
+/// [byte] That views side by side take by default, beside the first.
 const BYTES_MAX: u64 = 64 << 20;
 
 impl Plan {
-    /// As many as asked for, or as are fastest; shared out evenly among the dispatches of the largest set.
+    /// As many as asked for, or as are fastest; shared out evenly among the dispatches of the longest run.
     pub(super) fn choose_views_at_once(
         &mut self,
-        drafts: &[Draft],
         settings: &Settings,
-        triangles: u64,
+        inventory: &Inventory,
         limits: &Limits,
     ) {
-        let sets = || drafts.iter().flat_map(Draft::sets);
-        let views = sets().map(|set| set.view_count()).max().unwrap_or(1);
-        let map = map::map_shape(self.map);
-        let hierarchy = map::hierarchy_shape(self.density, self.map, self.levels, self.bounds_bits);
-        let casters = Shape::Buffer(triangles * CASTER_BYTES);
-        let slot = map.bytes() + hierarchy.bytes() + casters.bytes();
-        let mut most = views.min(settings.views_at_once.unwrap_or(by_default(slot, limits)));
-        if most > 1 && sets().any(|set| set.recipe.layers > 0) {
+        let views = self.sets().flat_map(ViewSet::runs).map(|run| run.len());
+        let views = views.max().unwrap_or(1) as u32;
+        let mut most = views.min(settings.views_at_once.unwrap_or(views));
+        if most > 1 && self.needs(|recipe| recipe.layers > 0) {
             most = 1;
             if settings.views_at_once.is_some() {
                 let note = "layers are peeled in the map itself: views are made one after another, whatever --views-at-once says";
                 self.notes.push(note.into());
             }
         }
+        let bytes = |count| peak_bytes(&self.resources_for(count, inventory));
+        let most_bytes = match settings.views_at_once {
+            Some(_) => u64::MAX,
+            None => limits.bytes_max().min(bytes(1) + bytes_by_default(limits)),
+        };
         let there_is_room = |&count: &u32| {
-            let shapes = [map, hierarchy, casters];
-            shapes.iter().all(|shape| fits(shape.times(count), limits))
+            let resources = self.resources_for(count, inventory);
+            let mut shapes = resources.iter().map(|resource| resource.shape);
+            shapes.all(|shape| fits(shape, limits)) && peak_bytes(&resources) <= most_bytes
         };
         let most = (1..=most).rev().find(there_is_room).unwrap_or(1);
         self.views_at_once = views.div_ceil(views.div_ceil(most));
     }
 
-    /// Lists the resources of the frame: where it would be too large with maps side by side that nobody asked for, without.
-    pub(super) fn size_resources(
-        &mut self,
-        inventory: &Inventory,
-        settings: &Settings,
-        limits: &Limits,
-    ) {
-        self.list_resources(inventory);
-        let by_default = settings.views_at_once.is_none() && self.views_at_once > 1;
-        if by_default && self.peak_bytes() > limits.bytes_max() {
-            self.views_at_once = 1;
-            self.graph = self.ordered();
-            self.list_resources(inventory);
-        }
+    /// Whether a set's views are looked at side by side.
+    pub(crate) fn looks_side_by_side(&self, recipe: &Recipe) -> bool {
+        self.views_at_once > 1 && recipe.side_by_side()
+    }
+
+    /// The views of a set, as many together as are side by side.
+    pub(super) fn side_by_side(&self, set: &ViewSet) -> Vec<Range<u32>> {
+        let most = self.views_at_once as usize;
+        let cut = move |run: Range<usize>| {
+            let end = run.end;
+            let part = move |first| set.number(first)..set.number((first + most).min(end));
+            run.step_by(most).map(part)
+        };
+        set.runs().flat_map(cut).collect()
     }
 }
 
-/// `slot`: [byte] for a view. On a CPU a dispatch costs next to nothing, and its caches hold the maps of one view: it takes 5 to 10 %
-/// more time for several.
-fn by_default(slot: u64, limits: &Limits) -> u32 {
+/// [byte] On a CPU a dispatch costs next to nothing, and its caches hold what one view needs: it takes 5 to 10 % more time for several.
+fn bytes_by_default(limits: &Limits) -> u64 {
     match limits.is_cpu {
-        true => 1,
-        false => 1 + (BYTES_MAX / slot.max(1)) as u32,
+        true => 0,
+        false => BYTES_MAX,
+    }
+}
+
+impl ViewSet {
+    /// Views in a row that run the same but for their face.
+    fn runs(&self) -> impl Iterator<Item = Range<usize>> {
+        let mut first = 0;
+        let runs = self
+            .views
+            .chunk_by(|a: &ViewPlan, b: &ViewPlan| a.is_round() == b.is_round());
+        runs.map(move |run| {
+            let start = first;
+            first += run.len();
+            start..first
+        })
+    }
+
+    /// What numbers a view of the set has in the frame.
+    fn number(&self, index: usize) -> u32 {
+        self.view_first + index as u32
+    }
+
+    /// Of views in a row those that look towards the same face, for each face: they are part by part towards the same ones.
+    pub(super) fn of_each_face(&self, views: Range<u32>) -> Vec<Scope> {
+        let faces = self
+            .views
+            .iter()
+            .take_while(|view| view.pose.part == self.views[0].pose.part);
+        let stride = faces.count() as u32;
+        let scope = |first: u32| Scope::Views {
+            first,
+            count: (views.end - first).div_ceil(stride),
+            stride,
+        };
+        let firsts = views.clone().take(stride as usize);
+        firsts.map(scope).collect()
     }
 }

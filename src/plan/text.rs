@@ -82,18 +82,13 @@ impl Plan {
             Lighting::Unshadowed => writeln!(out, "casts no shadow on anything visible"),
             Lighting::Shadowed => {
                 writeln!(out, "casts shadows")?;
-                let mut first = light.light.view_first;
-                for set in &light.sets {
-                    self.write_views(out, set, first)?;
-                    first += set.views.len() as u32;
-                }
-                Ok(())
+                let mut sets = light.sets.iter();
+                sets.try_for_each(|set| self.write_views(out, set))
             }
         }
     }
 
-    /// `first`: the number of the set's first view.
-    fn write_views(&self, out: &mut Formatter, set: &ViewSet, first: u32) -> Result {
+    fn write_views(&self, out: &mut Formatter, set: &ViewSet) -> Result {
         let faces: Vec<&str> = (0..FACES.len())
             .filter(|&face| (set.views.iter()).any(|view| view.view.face as usize == face))
             .map(|face| FACES[face])
@@ -145,7 +140,7 @@ impl Plan {
                 self.size.1.div_ceil(height)
             )?;
         }
-        let passes: Vec<String> = (self.passes_of_view(first).into_iter())
+        let passes: Vec<String> = (self.passes_of_view(set.view_first).into_iter())
             .map(|(name, times)| match times {
                 1 => name.to_owned(),
                 _ => format!("{name} x {times}"),

@@ -8,7 +8,7 @@ use ash::vk;
 
 use super::constants;
 use super::pipelines::{Lists, Pipelines};
-use super::step::{Inputs, Recording};
+use super::recording::{Inputs, Recording};
 use crate::error::Result;
 use crate::frame::{Lent, Pass, Scope, Step};
 use crate::gpu::{self, Commands, Constants, Gpu, Resources};
@@ -127,7 +127,7 @@ fn constants_of_views(plan: &Plan, of_frame: &Constants) -> Vec<Constants> {
         for set in &light.sets {
             for view in &set.views {
                 let mut constants = of_frame.clone();
-                constants.extend(constants::of_view(light, set, view));
+                constants.extend(constants::of_view(plan, light, set, view));
                 all.push(constants);
             }
         }

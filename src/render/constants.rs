@@ -34,7 +34,7 @@ pub fn of_frame(plan: &Plan) -> Constants {
 }
 
 /// What the passes of a view have beside them.
-pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
+pub fn of_view(plan: &Plan, light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
     let mut constants: Constants = set.settings.constants().into_iter().collect();
     constants.extend([
         ("DISC_LIGHT", u32::from(view.is_round())),
@@ -43,6 +43,7 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
         ("BEAM", (view.view.beam != [0.0; 3]).into()),
         ("CONES", (view.view.cone != ALL_CONES).into()),
         ("ACCUMULATE", light.accumulates().into()),
+        ("SIDE_BY_SIDE", plan.looks_side_by_side(&set.recipe).into()),
         ("LAYERS", set.recipe.layers.max(1)),
         ("COARSE_LEVELS", set.recipe.coarse_levels),
     ]);

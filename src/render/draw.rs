@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use super::pipelines::Pipelines;
-use super::step::{Inputs, Recording, in_fit, missing, push};
+use super::recording::{Inputs, Recording, in_fit, missing, push};
 use crate::error::Result;
 use crate::frame::{Drawn, Extent, Step, Target};
 use crate::gpu::{self, Attachments, Draw, MAX_COLORS, Rendering};

@@ -14,7 +14,7 @@ use crate::gpu::{Commands, Gpu};
 use crate::plan::{HostFrame, Plan, plan_for_host};
 use crate::shared::{self, Costs, Given, Instance, Projection, View};
 
-use super::step::Inputs;
+use super::recording::Inputs;
 pub use given::GivenMap;
 pub use input::{CasterImages, DrawnView, FrameInput, Mesh, MeshInstance, SlotImages};
 use prepared::Prepared;

@@ -4,36 +4,13 @@ use std::mem::offset_of;
 
 use super::draw::Drawing;
 use super::pipelines::Pipelines;
-use crate::error::{Error, Result};
-use crate::frame::{Domain, Lent, Scope, Step, Work};
-use crate::gpu::{self, Commands, Groups, Resources};
-use crate::plan::Plan;
+use super::recording::{Inputs, Recording, in_fit, push};
+use crate::error::Result;
+use crate::frame::{Domain, Scope, Step, Work};
+use crate::gpu::{Commands, Groups};
 use crate::shared::{
     Fit, GROUP_SIZE, GROUPS_PER_ROW, HierarchyGroups, Instance, Lists, Push, Round, TILE_SIZE,
 };
-
-/// What a host brings along for one frame; nothing where the library draws by itself.
-#[derive(Default)]
-pub struct Inputs<'a> {
-    /// Values for buffers, by name.
-    pub uploads: &'a [(&'static str, &'a [u8])],
-    pub slot: usize,
-    pub instances: &'a [Instance],
-    /// The mesh of each instance.
-    pub meshes: &'a [usize],
-    /// Draws the casters of the view of that number.
-    pub draw: Option<&'a mut dyn FnMut(u32)>,
-    /// The image for the result.
-    pub output: Option<gpu::Target>,
-}
-
-/// A frame while it is recorded.
-pub struct Recording<'a> {
-    pub plan: &'a Plan,
-    pub resources: &'a Resources,
-    /// [dispatch] In which lists are worked off.
-    pub rounds: u32,
-}
 
 impl Recording<'_> {
     /// `side`: [texel] of the view's map. Does not allocate.
@@ -118,17 +95,6 @@ impl Recording<'_> {
         Ok(())
     }
 
-    /// With which of its lists of resources a pass is recorded.
-    pub(super) fn list(&self, step: &Step, inputs: &Inputs) -> usize {
-        match (step.pass.lent, step.scope) {
-            (Lent::Surface, _) => inputs.slot,
-            (Lent::Map, Scope::Views { first, .. }) => {
-                inputs.slot * self.plan.views().count() + first as usize
-            }
-            _ => 0,
-        }
-    }
-
     /// `side`: [texel] of the views' maps.
     fn groups(&self, over: Domain, step: &Step, side: u32) -> Result<Groups<'_>> {
         let (plan, push) = (self.plan, push(step));
@@ -186,28 +152,13 @@ fn dispatch_instances(
     let dispatch = |(index, (instance, &mesh)): (usize, (&Instance, &usize))| {
         let push = Push {
             index: index as u32,
+            stride: 0,
             level: 0,
         };
         let count = instance.vertex_count.max(instance.triangle_count);
         Some((pipelines.compute().ok()?.with(mesh), push, reduction(count)))
     };
     commands.dispatch_independent(name, instances.filter_map(dispatch));
-}
-
-pub(super) fn missing(what: &str) -> Error {
-    Error::Invalid(format!("the frame lacks {what} that was planned for"))
-}
-
-/// What a step's shaders are told.
-pub(super) fn push(step: &Step) -> Push {
-    let index = match step.scope {
-        Scope::Frame => 0,
-        Scope::Light(index) | Scope::Views { first: index, .. } => index,
-    };
-    Push {
-        index,
-        level: step.level,
-    }
 }
 
 /// Work groups of a pass that reduces `count` items: each invocation takes several, so that few of them
@@ -231,11 +182,6 @@ fn listed(groups: u32) -> Groups<'static> {
 /// Work groups over an image of this size.
 fn tiles((width, height): (u32, u32)) -> [u32; 3] {
     [width.div_ceil(TILE_SIZE), height.div_ceil(TILE_SIZE), 1]
-}
-
-/// [byte] Where in a view's fit a field stands.
-pub(super) fn in_fit(view: u32, offset: usize) -> u64 {
-    (view as usize * size_of::<Fit>() + offset) as u64
 }
 
 /// [byte] Where in a round the groups of a list stand.

@@ -85,7 +85,10 @@ fn how_many_views_are_made_at_once_changes_no_bit() {
         let (one, most) = image(1);
         let (several, fewer) = image(5);
         let technique = &shot.settings.technique;
-        assert!(fewer < most, "{name}, {technique}: {most} steps, then {fewer}");
+        assert!(
+            fewer < most,
+            "{name}, {technique}: {most} steps, then {fewer}"
+        );
         assert!(same_bits(&one, &several), "{name}, {technique}");
     }
 }
@@ -262,12 +265,23 @@ fn a_light_without_extent_casts_a_hard_shadow() {
 }
 
 #[test]
-fn memory_does_not_depend_on_the_split() {
-    let per_view = ["views", "fits", "lists", "rounds", "sectors"];
+fn memory_does_not_depend_on_the_split_where_views_are_alone() {
+    let per_view = [
+        "views",
+        "fits",
+        "hierarchy_groups",
+        "lists",
+        "rounds",
+        "sectors",
+    ];
     with_gpu(|gpu| {
         for name in SCENES {
             let bytes = [1, 2, 4, 8, 16].map(|split| {
-                let plan = planned(gpu, &load(name, 64, settings(256, split)));
+                let settings = Settings {
+                    views_at_once: Some(1),
+                    ..settings(256, split)
+                };
+                let plan = planned(gpu, &load(name, 64, settings));
                 let small = plan.memory().filter(|(name, _)| per_view.contains(name));
                 plan.memory_bytes() - small.map(|(_, bytes)| bytes).sum::<u64>()
             });

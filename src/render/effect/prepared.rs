@@ -5,8 +5,8 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::super::chain::{Chain, Loans};
+use super::super::recording::Inputs;
 use super::super::resources;
-use super::super::step::Inputs;
 use super::input::{Mesh, SlotImages};
 use super::surface::{Rounding, is_fractional_color, rounding};
 use crate::error::{Error, Result};

@@ -72,7 +72,8 @@ fn add_hidden(
     }
     let view = planned.view;
     let size = view.map_size as i32;
-    let depths: Vec<f32> = renderer.read_image_of_view("shadow_map", index, (size * size) as usize)?;
+    let depths: Vec<f32> =
+        renderer.read_image_of_view("shadow_map", index, (size * size) as usize)?;
     let map = ShadowMap {
         size,
         depths: &depths,
