@@ -19,6 +19,7 @@ mod primitive;
 mod shape;
 mod tree;
 mod triangles;
+mod uri;
 
 use std::path::PathBuf;
 

@@ -161,7 +161,7 @@ fn a_gpu_looks_at_several_views_at_once() {
             plan.memory_bytes(),
         )
     };
-    for (name, views, steps) in [("knot", 6, 45), ("colonnade", 8, 70)] {
+    for (name, views, steps) in [("knot", 6, 43), ("colonnade", 8, 67)] {
         let (one, all_steps, one_bytes) = planned(name, &LIMITS);
         let (several, fewer_steps, bytes) = planned(name, &gpu);
         assert_eq!((one, several), (1, views), "{name}");

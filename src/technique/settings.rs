@@ -144,15 +144,16 @@ settings! {
         )
         .one_of(&[16, 32], "a bound of the hierarchy has {} bits");
 
-    /// [view] [1, 64] Views whose maps are made side by side, at most; None: as many as fit into 64 MiB. The image is the same.
+    /// [view] [1, 64] Views side by side, at most; None: as many as fit into 64 MiB more, or 1 on a CPU. The image is the same.
     views_at_once: Option<u32> = None,
         Row::value(
             "views-at-once",
             "N",
-            "Views whose maps are made side by side, 1 to 64: fewer and larger dispatches for more memory, the same \
-             image [default: as many as fit into 64 MiB]",
+            "Views that are made, and with local packets looked at, side by side, 1 to 64: fewer and larger dispatches \
+             for more memory, the same image [default: as many as fit into 64 MiB more, 1 on CPU drivers]",
         )
-        .within(1, 64, "the number of views at once is {}");
+        .within(1, 64, "the number of views at once is {}")
+        .depends();
 
     /// [8, 16] `Bitmask` only: the light has light_samples × light_samples samples.
     light_samples: u32 = 16,
