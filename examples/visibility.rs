@@ -97,6 +97,7 @@ fn shot() -> Result<Shot> {
         }],
         settings: Settings::usual(Technique::PacketContour),
         budget_map: None,
+        physical: false,
         notes: Vec::new(),
     })
 }

@@ -534,7 +534,7 @@ typedef struct hs_renderer_info {
     const void *next;
     // 1 = a shaded picture beside the visibility.
     uint32_t picture;
-    // Factor on the picture's radiance; usually 1.
+    // Factor on the picture's radiance; 0 = what suits the shot: 1, or more or less for lights in candela, lux and nit. Usually 0.
     float exposure;
     // [radiance] [0, ...) Constant light from everywhere, so that umbrae are dark rather than black; usually 0.04.
     float ambient;

@@ -51,6 +51,7 @@
 //!     }],
 //!     settings: Settings { map: 256, ..Settings::usual(Technique::PacketContour) },
 //!     budget_map: None,
+//!     physical: false,
 //!     notes: Vec::new(),
 //! };
 //! let options = RenderOptions {

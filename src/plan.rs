@@ -33,7 +33,7 @@ pub use host::{HostFrame, plan_for_host};
 pub use light::{LightPlan, Lighting, ViewPlan, ViewSet};
 pub use memory::PlannedResource;
 pub use notes::shines_along;
-pub use views::{MapParams, ViewPose};
+pub use views::{MapParams, ViewPose, suited_exposure};
 
 /// What the caller wants to have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

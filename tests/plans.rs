@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3, Vec4};
 use halfshade::gpu::Limits;
-use halfshade::plan::{Outputs, plan};
+use halfshade::plan::{Outputs, plan, suited_exposure};
 use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
 use halfshade::shot::{Overrides, Shot};
 use halfshade::technique::{Settings, Technique};
@@ -84,6 +84,7 @@ fn floor(light_height: f64, light_v: DVec3) -> Shot {
         }],
         settings: Settings::default(),
         budget_map: None,
+        physical: false,
         notes: Vec::new(),
     }
 }
@@ -142,6 +143,47 @@ fn settings_change_what_runs() {
     check("plate-split-1", &one_view, EVERYTHING, false);
     let pixels = with(plate(), |settings| settings.packet = (1, 1));
     check("plate-packet-1x1", &pixels, EVERYTHING, false);
+}
+
+/// White at the camera's target has radiance 1 from a sphere in nit, from a sun in lux, and from both together; lights in no unit are shown as
+/// they are.
+#[test]
+fn lights_in_physical_units_are_exposed_for() {
+    let mut shot = scene("plate");
+    let light = |shape, intensity| AreaLight {
+        name: String::new(),
+        center: DVec3::new(1.0, 5.0, 2.0),
+        shape,
+        color: Vec3::ONE,
+        intensity: Some(intensity),
+        beam: None,
+    };
+    let sphere = light(LightShape::Sphere { radius: 0.25 }, 1000.0);
+    let direction = DVec3::new(0.3, -1.0, 0.0);
+    let angle_deg = 0.533;
+    let sun = light(
+        LightShape::Sun {
+            direction,
+            angle_deg,
+        },
+        1e5,
+    );
+    let way = sphere.center - shot.camera.target;
+    let of_sphere = 1000.0 * 0.25 * 0.25 / way.length_squared();
+    let of_sun = 1e5 / std::f64::consts::PI;
+    for (lights, radiance) in [
+        (vec![sphere.clone()], of_sphere),
+        (vec![sun.clone()], of_sun),
+        (vec![sphere, sun], of_sphere + of_sun),
+    ] {
+        shot.lights = lights;
+        shot.physical = false;
+        assert_eq!(suited_exposure(&shot), 1.0);
+        shot.physical = true;
+        // The sun's disc is flat: tan² and not sin² of its angle; and f32.
+        let shown = f64::from(suited_exposure(&shot)) * radiance;
+        assert!((shown - 1.0).abs() < 3e-5, "{shown}");
+    }
 }
 
 /// What a view alone is too small for is done for several at once, of several faces and of sub-lights that a rim cuts or does not; on a

@@ -8,7 +8,7 @@ use super::convert::reserved;
 use super::handles::Registry;
 use super::shot::SHOTS;
 use super::types::*;
-use crate::plan::Outputs;
+use crate::plan::{Outputs, suited_exposure};
 use crate::render::{DEFAULT_COSTS, DEFAULT_EXPOSURE, Frame, RenderOptions, Renderer};
 use crate::shared::{Costs, Exposure};
 
@@ -50,9 +50,12 @@ pub unsafe extern "C" fn hs_renderer_create(
         let target = unsafe { place(renderer, "the pointer to the renderer") }?;
         *target = std::ptr::null_mut();
         let shot = SHOTS.enter(scope, shot)?;
-        let options = options(unsafe { optional(info) }?)?;
+        let mut options = options(unsafe { optional(info) }?)?;
         // A copy, so that the shot is free while the driver compiles.
         let shown = shot.with(|shot| Ok(shot.clone()))?;
+        if options.exposure.scale == 0.0 {
+            options.exposure.scale = suited_exposure(&shown);
+        }
         let made = Rendering {
             renderer: Renderer::new(shot.context.gpu()?, &shown, options)?,
             frame: None,

@@ -64,6 +64,7 @@ fn shot_of(scene: &Arc<Scene>) -> Shot {
         lights: scene.lights.clone(),
         settings: Settings::default(),
         budget_map: None,
+        physical: false,
         notes: Vec::new(),
         scene: scene.clone(),
     }

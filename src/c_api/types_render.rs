@@ -112,7 +112,7 @@ pub struct hs_renderer_info {
     pub next: *const c_void,
     /// 1 = a shaded picture beside the visibility.
     pub picture: u32,
-    /// Factor on the picture's radiance; usually 1.
+    /// Factor on the picture's radiance; 0 = what suits the shot: 1, or more or less for lights in candela, lux and nit. Usually 0.
     pub exposure: f32,
     /// [radiance] [0, ...) Constant light from everywhere, so that umbrae are dark rather than black; usually 0.04.
     pub ambient: f32,

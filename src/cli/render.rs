@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use halfshade::gpu::Gpu;
 use halfshade::image::{Plane, RgbImage, check_writable, write_atomically, write_exr};
-use halfshade::plan::Outputs;
+use halfshade::plan::{Outputs, suited_exposure};
 use halfshade::render::{DEFAULT_EXPOSURE, RenderOptions, Renderer};
 use halfshade::shared::Exposure;
 use halfshade::shot::Shot;
@@ -45,14 +45,15 @@ pub struct Args {
     /// Timed frames, 1 to 10000, after one to warm up; each draws its shadow maps anew
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(REPEAT))]
     repeat: u32,
-    /// Brightness of the picture in stops: each doubles it
+    /// Brightness of the picture in stops, each of which doubles it, or auto: what suits lights in candela, lux and nit, else 0
     #[arg(
         long,
         value_name = "EV",
-        default_value_t = 0.0,
+        default_value = "auto",
+        value_parser = parse_exposure,
         allow_hyphen_values = true
     )]
-    exposure: f32,
+    exposure: Stops,
     /// Constant light from everywhere, 0 or more, so that umbrae are dark rather than black
     #[arg(long, value_name = "RADIANCE", default_value_t = DEFAULT_EXPOSURE.ambient)]
     ambient: f32,
@@ -73,10 +74,9 @@ struct Products {
 /// A flag's value is out of its range, or nothing is to be written, or not where it is said.
 pub fn check(args: &Args) -> Result<()> {
     args.shot.check()?;
-    if !args.exposure.exp2().is_finite() || !args.ambient.is_finite() || args.ambient < 0.0 {
+    if !args.ambient.is_finite() || args.ambient < 0.0 {
         return Err(Error::Invalid(
-            "--exposure and --ambient must be finite, --exposure below 128, --ambient not negative"
-                .into(),
+            "--ambient must be finite and not negative".into(),
         ));
     }
     let outputs = args.outputs();
@@ -153,7 +153,7 @@ fn render(args: &Args, given: &Given, gpu: &Arc<Gpu>) -> Result<Products> {
         },
         costs: calibration.costs(),
         exposure: Exposure {
-            scale: args.exposure.exp2(),
+            scale: exposure(args, &mut shot),
             ambient: args.ambient,
             light_count: 0,
         },
@@ -169,6 +169,34 @@ fn render(args: &Args, given: &Given, gpu: &Arc<Gpu>) -> Result<Products> {
         visibility: visibility.transpose()?,
         stats,
     })
+}
+
+/// \[stop\] None: what suits the shot.
+type Stops = Option<f32>;
+
+fn parse_exposure(text: &str) -> std::result::Result<Stops, String> {
+    match text.parse::<f32>() {
+        _ if text == "auto" => Ok(None),
+        Ok(stops) if stops.abs() < 128.0 => Ok(Some(stops)),
+        _ => Err("an exposure is auto, or a number of stops between -128 and 128".into()),
+    }
+}
+
+/// Factor on radiance; notes what was chosen for lights in physical units.
+fn exposure(args: &Args, shot: &mut Shot) -> f32 {
+    let Some(stops) = args.exposure else {
+        let suited = suited_exposure(shot);
+        if args.output.is_some() && shot.physical {
+            let note = format!(
+                "The lights are in candela, lux or nit; the picture is exposed by {:.1} stops (--exposure says otherwise).",
+                suited.log2()
+            );
+            print_note(&note);
+            shot.notes.push(note);
+        }
+        return suited;
+    };
+    stops.exp2()
 }
 
 fn timed_frames(

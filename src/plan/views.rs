@@ -173,6 +173,28 @@ pub fn intensity(shot: &Shot, light: &AreaLight) -> [f32; 3] {
     colored(light, intensity)
 }
 
+/// Factor on radiance that shows a shot's lights: 1, or where they come in physical units such that a white surface at the camera's
+/// target that faces each of them has radiance 1 from all of them together, as the eye weighs colours.
+pub fn suited_exposure(shot: &Shot) -> f32 {
+    const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+    let luminance = |light: &AreaLight| {
+        let facing = match light.spread() {
+            Spread::Sun => 1.0,
+            _ => (shot.camera.target - light.center).length_squared(),
+        };
+        let channels = intensity(shot, light).into_iter().zip(LUMINANCE);
+        let weighed: f64 = channels
+            .map(|(channel, share)| f64::from(channel) * share)
+            .sum();
+        weighed / (PI * facing.max(f64::MIN_POSITIVE))
+    };
+    let radiance: f64 = shot.lights.iter().map(luminance).sum();
+    match shot.physical && radiance.is_normal() {
+        true => (1.0 / radiance).clamp(f32::MIN_POSITIVE.into(), f32::MAX.into()) as f32,
+        false => 1.0,
+    }
+}
+
 fn sun_intensity(light: &AreaLight) -> [f32; 3] {
     // A surface that faces a sun of radiance L has irradiance π sin² · L, where its radiance times area is π tan² · L.
     let (tangent, _) = light.half_size();

@@ -2,9 +2,11 @@
 //!
 //! Area lights are those of the draft extension `EXT_lights_area`: a `rect` is `size` high (local y)
 //! and `size` × `rect.aspect` wide (local x), a `disk` has the diameter `size`; both shine along the
-//! node's −Z and grow with the largest component of its world scale.
+//! node's −Z and grow with the largest component of its world scale. Intensities are in nit. Those of `KHR_lights_punctual` are points and
+//! spots in candela, which become spheres, and suns in lux.
 
 use std::cell::Cell;
+use std::f64::consts::PI;
 
 use glam::{DAffine3, DVec3, Vec3};
 use gltf::json::Camera as CameraJson;
@@ -236,16 +238,19 @@ impl<'a> Emitters<'a> {
                 LightShape::Sphere { radius }
             }
         };
-        notes.add(
-            "the intensity of a point, spot or directional light is ignored; it is set to suit the view",
-            &name,
-        );
+        // Candela of a point or spot light, of which a sphere's radiance is what its disc has to have; lux of a directional one.
+        let intensity = match shape {
+            LightShape::Sphere { radius } if radius > 0.0 => {
+                f64::from(json.intensity) / (PI * radius * radius)
+            }
+            _ => f64::from(json.intensity),
+        };
         Ok(Some(AreaLight {
             name: json.name.clone().or(node.name.clone()).unwrap_or(name),
             center: world.translation,
             shape,
             color: Vec3::from(json.color).max(Vec3::ZERO),
-            intensity: None,
+            intensity: Some(intensity as f32),
             beam,
         }))
     }

@@ -324,8 +324,10 @@ impl Draft {
             None => scene_camera(&scene, overrides.camera_index)
                 .map_err(|message| Error::parse(path, message))?,
         };
+        let mut physical = false;
         if lights.is_empty() {
             lights = scene.lights.clone();
+            physical = lights.iter().any(|light| light.intensity.is_some());
         }
         if lights.is_empty() {
             let notes = noted(&scene);
@@ -356,6 +358,7 @@ impl Draft {
             lights,
             settings,
             budget_map: shares.map(Arc::new),
+            physical,
             notes,
         })
     }

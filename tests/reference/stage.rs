@@ -95,6 +95,7 @@ pub fn shot(mut scene: Scene, origin: DVec3, shape: LightShape) -> Shot {
         lights,
         settings: Settings::default(),
         budget_map: None,
+        physical: false,
         notes,
     }
 }

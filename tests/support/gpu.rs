@@ -234,6 +234,7 @@ pub fn shot(
         lights: vec![light],
         settings,
         budget_map: None,
+        physical: false,
         notes: Vec::new(),
     }
 }

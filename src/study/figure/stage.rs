@@ -183,6 +183,7 @@ impl Stage {
             }],
             settings: Settings::default(),
             budget_map: None,
+            physical: false,
             notes: Vec::new(),
         }
     }

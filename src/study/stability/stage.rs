@@ -165,6 +165,7 @@ impl Stage {
                 lights: vec![light],
                 settings: Settings::default(),
                 budget_map: None,
+                physical: false,
                 notes: Vec::new(),
             },
             changes: self.changes,
