@@ -32,7 +32,9 @@ fn settings(packet: (u32, u32), mapping: Mapping, leaf: Leaf) -> Settings {
 fn scaled(mut shot: Shot, scale: f64) -> Shot {
     for light in &mut shot.lights {
         match &mut light.shape {
-            LightShape::Rect { u, v } => (*u, *v) = (*u * scale, *v * scale),
+            LightShape::Rect { u, v } | LightShape::Polygon { u, v, .. } => {
+                (*u, *v) = (*u * scale, *v * scale)
+            }
             LightShape::Disc { radius, .. } | LightShape::Sphere { radius } => *radius *= scale,
             LightShape::Sun { angle_deg, .. } => *angle_deg *= scale,
         }

@@ -12,18 +12,21 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(frame);
 readonly BUFFER(lights);
+readonly BUFFER(corners);
 readonly BUFFER(occlusion);
 writeonly BUFFER(visibility);
 
 #include "surface.glsl"
+#include "outline.glsl"
 
 // Whether any part of the light is in front of the surface, and the surface in front of the light, beyond rounding.
 bool faces_light(Facing facing, vec3 normal) {
     Light light = facing.light;
     vec3 to_point = -facing.way;
-    precise vec2 along = abs(vec2(dot_exact(normal, light.u), dot_exact(normal, light.v))) * light.half_size;
+    precise vec2 along = vec2(dot_exact(normal, light.u), dot_exact(normal, light.v)) * light.half_size;
     precise float square = along.x * along.x + along.y * along.y;
-    precise float reach = light.round != 0u ? sqrt(square) : along.x + along.y;
+    precise float reach = light.round != 0u ? sqrt(square) : abs(along.x) + abs(along.y);
+    if (is_polygon(light)) reach = polygon_reach(light, along);
     precise float rounding = HORIZON_ROUNDING * (facing.magnitude.x + facing.magnitude.y + facing.magnitude.z);
     precise float height = reach - dot_exact(normal, to_point);
     return (light.spread == SPREAD_POINT || dot_exact(to_point, light.n) > rounding) && height > rounding;

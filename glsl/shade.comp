@@ -3,12 +3,13 @@
 // The picture: each light's unshadowed irradiance times its visibility, on a diffuse surface, tone-mapped [Reinhard 2002,
 // eq. 4] and sRGB-encoded.
 #include "pass.glsl"
+readonly BUFFER(lights);
+readonly BUFFER(corners);
 #include "irradiance.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
 readonly BUFFER(frame);
-readonly BUFFER(lights);
 readonly BUFFER(exposure);
 TEXTURE(albedo);
 readonly BUFFER(visibility);

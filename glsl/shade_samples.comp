@@ -3,6 +3,8 @@
 // The picture of pixels of several samples, with one visibility each [Schwarz08 §7]: samples are shaded, tone-mapped and averaged. A
 // sample whose depth is not that of its pixel takes the visibility of the pixel or neighbour whose depth is nearest to its own.
 #include "pass.glsl"
+readonly BUFFER(lights);
+readonly BUFFER(corners);
 #include "irradiance.glsl"
 #include "samples.glsl"
 
@@ -10,7 +12,6 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 layout(constant_id = 58) const bool NEIGHBOUR_VISIBILITY = true;  // otherwise a sample has its own pixel's
 
 readonly BUFFER(frame);
-readonly BUFFER(lights);
 readonly BUFFER(exposure);
 readonly BUFFER(visibility);
 writeonly BUFFER(picture);

@@ -16,8 +16,8 @@
  *
  * Conventions
  *
- * Structures begin with `type` (its HS_TYPE_ constant), `size` (its sizeof) and `next` (NULL; hs_knob alone extends a
- * structure, hs_settings). A wrong type or size is HS_INVALID_ARGUMENT. Fields called `reserved` are 0. Numbers have a fixed
+ * Structures begin with `type` (its HS_TYPE_ constant), `size` (its sizeof) and `next` (NULL; hs_knob extends hs_settings,
+ * hs_polygon hs_light). A wrong type or size is HS_INVALID_ARGUMENT. Fields called `reserved` are 0. Numbers have a fixed
  * width; yes and no are 1 and 0.
  *
  * Handles (hs_context *, hs_scene *, ...) are opaque and have no address behind them: one that was destroyed, made up
@@ -96,6 +96,9 @@
 // hs_knob
 #define HS_TYPE_KNOB 15
 
+// hs_polygon
+#define HS_TYPE_POLYGON 16
+
 // Run under the Khronos validation layer with synchronization validation; see hs_context_validation_messages.
 #define HS_CONTEXT_VALIDATE 1
 
@@ -134,6 +137,9 @@
 
 // `shape` of a light: a sun, light from infinity.
 #define HS_LIGHT_SUN 3
+
+// `shape` of a light: a convex polygon, whose corners an hs_polygon in `next` gives.
+#define HS_LIGHT_POLYGON 4
 
 // `technique`: Packet-based hierarchical contours [Yang09], the library's own.
 #define HS_TECHNIQUE_PACKET_CONTOUR 0
@@ -424,9 +430,9 @@ typedef struct hs_light {
     uint32_t type;
     // sizeof(hs_light)
     uint32_t size;
-    // NULL
+    // NULL; the hs_polygon of HS_LIGHT_POLYGON.
     const void *next;
-    // [scene units] Of a sun without meaning.
+    // [scene units] Of a sun or a polygon without meaning.
     double center[3];
     // [scene units] Half-axis of a rectangle.
     double u[3];
@@ -637,6 +643,21 @@ typedef struct hs_knob {
     // As the command line takes it: "flood". "1" or "0" of what has no value there: the flag is given, or not.
     const char *value;
 } hs_knob;
+
+// The corners of a light that is a polygon, chained to hs_light.next. Read during the call.
+typedef struct hs_polygon {
+    // HS_TYPE_POLYGON
+    uint32_t type;
+    // sizeof(hs_polygon)
+    uint32_t size;
+    // NULL
+    const void *next;
+    // [scene units] x, y, z of each corner. In one plane and convex; the light shines to the side from which they run
+    // counter-clockwise.
+    const double *corners;
+    // [3, 16]
+    uint64_t corner_count;
+} hs_polygon;
 
 // Done.
 #define HS_OK 0

@@ -168,6 +168,12 @@ impl Plan {
         plan
     }
 
+    /// [half sizes] Of the lights that are polygons, one after the other.
+    pub fn corners(&self) -> Vec<[f32; 2]> {
+        let corners = self.lights.iter().flat_map(|light| light.outline.corners());
+        corners.map(|corner| corner.as_vec2().into()).collect()
+    }
+
     pub fn views(&self) -> impl Iterator<Item = &ViewPlan> {
         self.lights.iter().flat_map(LightPlan::views)
     }

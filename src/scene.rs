@@ -25,7 +25,9 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
-pub use light::{Ball, Beam, Cone, SUN_ANGLE_DEG, Side, Spread, mapped};
+pub use light::{
+    Ball, Beam, Cone, Corners, Outline, SUN_ANGLE_DEG, Side, Spread, mapped, polygon_area,
+};
 pub(crate) use primitive::MAX_COORDINATE;
 pub use shape::Shape;
 pub use triangles::Triangles;
@@ -123,11 +125,21 @@ pub struct Camera {
 /// What an area light looks like. A light with no extent at all is a point: its shadow is hard. A disc with a normal is the
 /// limit of small discs then; other points have no direction and shine to all sides alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a host moves lights in every frame, which must not allocate"
+)]
 pub enum LightShape {
     /// [scene units] Half-axis vectors, perpendicular to each other; the light shines along u × v.
     Rect { u: DVec3, v: DVec3 },
     /// [scene units] The light shines along `normal` (any length but 0, unless the radius is 0).
     Disc { normal: DVec3, radius: f64 },
+    /// [scene units] What corners leave of a rectangle with these half-axes; it shines along u × v. [`LightShape::polygon`] makes it.
+    Polygon {
+        u: DVec3,
+        v: DVec3,
+        corners: Corners,
+    },
     /// [scene units] It shines to all sides.
     Sphere { radius: f64 },
     /// Light from infinity along `direction` (any length but 0). [degree] \[0, 180) The angular diameter of the disc that it

@@ -178,6 +178,11 @@ shared! {
         half_size: vec2,
         /// 1 = disc.
         round: uint,
+        /// [half sizes²] Area of its outline.
+        area: float,
+        /// A polygon's corners in `corners`; 0 = it is none.
+        corner_first: uint,
+        corner_count: uint,
         /// Sum of the weights of its views' sub-lights, summed in f32 in the order of the views.
         weight_sum: float,
         /// One of `SPREAD_…`.
@@ -215,7 +220,7 @@ shared! {
         /// [scene units] The sub-light's half sizes; 1 for a light without extent.
         half_size: vec2,
         /// [half sizes] Where the sub-light begins and ends, seen from its centre: −1, −1, 1, 1 unless
-        /// a disc's rim cuts it; all 0 for a light without extent.
+        /// a disc's rim or a polygon's sides cut it; all 0 for a light without extent.
         extent: vec4,
         /// [half sizes] Centre and radius of the disc that bounds it, if one does.
         rim: vec3,
@@ -223,7 +228,7 @@ shared! {
         area: float,
         /// What it adds to the light's visibility, before the division by the light's `weight_sum`.
         weight: float,
-        /// First entry of its sector table.
+        /// First entry of its sector table, which its edges follow.
         sector_first: uint,
         /// 0 = front; 1, 2 = along ±u; 3, 4 = along ±v.
         face: uint,

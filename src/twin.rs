@@ -12,6 +12,8 @@ pub mod hierarchy;
 pub mod irradiance;
 pub mod kernels;
 pub mod microrect;
+pub mod outline;
+pub mod polygon_irradiance;
 pub mod quality;
 pub mod radial;
 pub mod receiver;

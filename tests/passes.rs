@@ -328,8 +328,8 @@ fn check_integration(
         size: MAP as i32,
         depths: &traces.map,
     };
-    let round = traces.planned.is_round();
-    let light = SubLight::new(&traces.planned.view, &traces.fit, round, map);
+    let cut = traces.planned.cut();
+    let light = SubLight::new(&traces.planned.view, &traces.fit, cut, map);
     // The device's area is the end of a table in f32.
     assert!((light.area() - f64::from(area)).abs() < 1e-5, "area {area}");
     let mut largest: f64 = 0.0;
@@ -370,6 +370,7 @@ fn check_integration(
 fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
     let mut renderer = renderer(gpu, shot);
     let light = renderer.plan().lights[0].light;
+    let corners = renderer.plan().corners();
     let mut hidden = vec![0.0; (SIZE * SIZE) as usize];
     let mut largest: f64 = 0.0;
     let mut undecided = [0; 2];
@@ -403,7 +404,7 @@ fn check(gpu: &Arc<Gpu>, name: &str, shot: &Shot) {
             assert!(found[i].is_nan());
             continue;
         };
-        let wanted = resolve::visibility(&light, position, normal, hidden[i]);
+        let wanted = resolve::visibility(&light, &corners, position, normal, hidden[i]);
         let difference = (f64::from(found[i]) - wanted).abs();
         assert!(
             difference < TOLERANCE,
@@ -474,6 +475,29 @@ fn the_side_faces_of_a_disc() {
         };
         shot.settings.split = 2;
         check(gpu, "grid under a disc", &shot);
+    });
+}
+
+/// Whole, and cut into parts of up to three sides, seen from all faces.
+#[test]
+fn the_sides_of_a_polygon() {
+    with_device(|gpu| {
+        let mut shot = shot("grid");
+        let light = &mut shot.lights[0];
+        let corners = [
+            [-0.9, -0.5],
+            [0.8, -0.7],
+            [1.0, 0.3],
+            [0.2, 0.9],
+            [-0.6, 0.6],
+        ];
+        let tilted = |[x, z]: [f64; 2]| light.center + DVec3::new(x, 0.1 * x - 0.2 * z, z);
+        let (center, shape) = LightShape::polygon(&corners.map(tilted)).expect("a polygon");
+        (light.center, light.shape) = (center, shape);
+        for split in [1, 2] {
+            shot.settings.split = split;
+            check(gpu, "grid under a polygon", &shot);
+        }
     });
 }
 

@@ -114,7 +114,15 @@ fn write(file: &Path, text: &str) {
 
 #[test]
 fn every_scene_at_the_defaults() {
-    for name in ["colonnade", "grid", "knot", "plate", "staircase", "tree"] {
+    for name in [
+        "colonnade",
+        "grid",
+        "hexagon",
+        "knot",
+        "plate",
+        "staircase",
+        "tree",
+    ] {
         check(name, &scene(name), EVERYTHING, false);
     }
 }

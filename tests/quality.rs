@@ -137,7 +137,7 @@ fn check_blends(
     quality: &[f32],
 ) -> usize {
     let budget = budget_of(settings);
-    let (view, round) = (&traces.planned.view, traces.planned.is_round());
+    let (view, cut) = (&traces.planned.view, traces.planned.cut());
     let seen: BTreeMap<u32, _> = (1..=budget.levels)
         .map(|level| (level, coarse.seen(level)))
         .collect();
@@ -147,7 +147,7 @@ fn check_blends(
         let share = |level: u32, receiver: &Receiver| {
             let cells = (unpacked(kernel.first), unpacked(kernel.last));
             if level == 0 {
-                let light = SubLight::new(view, &traces.fit, round, map_of(traces));
+                let light = SubLight::new(view, &traces.fit, cut, map_of(traces));
                 return light.hidden_share(receiver, cells.0, cells.1);
             }
             let (size, depths) = &seen[&level];
@@ -155,7 +155,7 @@ fn check_blends(
                 size: *size,
                 depths,
             };
-            let light = SubLight::new(view, &fit_at(&traces.fit, level, budget.levels), round, map);
+            let light = SubLight::new(view, &fit_at(&traces.fit, level, budget.levels), cut, map);
             let receiver = receiver_at(view, receiver, level, budget.levels);
             let (first, last) = budget.coarse_cells(cells, level);
             light.hidden_share(&receiver, first, last)

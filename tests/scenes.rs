@@ -26,7 +26,7 @@ fn every_scene_is_valid_and_has_a_shot() {
         .filter(|file| file.name.ends_with(".json"))
         .map(|file| serde_json::from_slice(&file.bytes).expect("a shot file is JSON"))
         .collect();
-    assert_eq!(shots.len(), 6);
+    assert_eq!(shots.len(), 7);
     for shot in shots {
         let scene = files.iter().find(|file| shot["scene"] == *file.name);
         let scene = scene.unwrap_or_else(|| panic!("{} has no scene", shot["name"]));

@@ -280,6 +280,36 @@ fn suns_and_spheres() {
 }
 
 #[test]
+fn polygons() {
+    let mut json = example();
+    // Counter-clockwise from below.
+    let corners = json!([[0, 3, 0], [2, 3, 0], [2, 3, 1], [0, 3, 1]]);
+    json["lights"] = json!([{"type": "polygon", "corners": corners}]);
+    let light = &load(&json).unwrap().lights[0];
+    let (_, _, normal) = light.frame();
+    assert!(light.center.distance(DVec3::new(1.0, 3.0, 0.5)) < 1e-14);
+    assert!(normal.distance(DVec3::NEG_Y) < 1e-14 && (light.area() - 2.0).abs() < 1e-14);
+    let refused = |corners: serde_json::Value| {
+        let mut json = json.clone();
+        json["lights"][0]["corners"] = corners;
+        load(&json).unwrap_err().to_string()
+    };
+    assert!(refused(json!(null)).contains("light 0 lacks \"corners\""));
+    assert!(
+        refused(json!([[0, 3, 0], [2, 3, 0]]))
+            .contains("light 0: a polygon has 3 to 16 corners, not 2")
+    );
+    assert!(refused(json!([[0, 3, 0], [1e19, 3, 0], [2, 3, 1]])).contains("corner 1"));
+    json["lights"][0]["cone_deg"] = json!([10, 20]);
+    assert!(
+        load(&json)
+            .unwrap_err()
+            .to_string()
+            .contains("a cone is for discs and spheres")
+    );
+}
+
+#[test]
 fn cones_of_light() {
     let mut json = example();
     json["lights"] = json!([

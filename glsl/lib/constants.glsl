@@ -4,7 +4,8 @@
 layout(constant_id = 0) const uint PACKET_WIDTH = 1u;     // [pixel]
 layout(constant_id = 1) const uint PACKET_HEIGHT = 1u;    // [pixel]
 layout(constant_id = 3) const bool LANES = false;         // a packet's pixels have an invocation each
-layout(constant_id = 5) const bool DISC_LIGHT = false;    // the sub-light is a disc or cut by one
+layout(constant_id = 5) const bool DISC_LIGHT = false;    // a disc's rim bounds the sub-light
+layout(constant_id = 70) const uint EDGES = 0u;           // sides of a polygon that do
 layout(constant_id = 6) const bool OBLIQUE = false;       // the map is not parallel to the light
 layout(constant_id = 7) const bool COUNT = false;         // write `counters`
 layout(constant_id = 8) const bool ACCUMULATE = false;    // what views add up is cleared before the first

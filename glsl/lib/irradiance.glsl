@@ -1,4 +1,4 @@
-// Unshadowed irradiance by a rectangle or a disc of constant radiance, E = ∫ cos ω dω over what of it is above the
+// Unshadowed irradiance by a rectangle or a disc of constant radiance (polygons: polygon_irradiance.glsl), E = ∫ cos ω dω over what of it is above the
 // surface's horizon.
 //
 // In the light's plane, x and y count from the foot of the receiver's perpendicular; D is its length, and
@@ -20,6 +20,7 @@
 
 #include "facing.glsl"
 #include "beam.glsl"
+#include "outline.glsl"
 
 // [scale] Shorter lengths are taken for it: the limit of a point is reached within a share of 1e-18.
 const float SHORTEST = 1e-9;
@@ -72,14 +73,19 @@ SeenLight seen_light(Light light, vec3 to_center, vec3 normal, float inverse_sca
     return seen;
 }
 
+// (s − atan s) / s³ with z = s², off by up to 4.3e-6.
+float arc_polynomial(float z) {
+    float q = ARCTANGENT[5];
+    for (int i = 4; i >= 0; --i) q = q * z + ARCTANGENT[i];
+    return q;
+}
+
 // θ − sin θ for θ in [0, π], t = tan(θ/2): twice the area between an arc and its chord.
 float arc_excess(float t) {
     bool obtuse = t > 1.0;
     float s = obtuse ? 1.0 / t : t;
     float z = s * s;
-    // (s − atan s) / s³, off by up to 4.3e-6.
-    float q = ARCTANGENT[5];
-    for (int i = 4; i >= 0; --i) q = q * z + ARCTANGENT[i];
+    float q = arc_polynomial(z);
     float c = 1.0 / (1.0 + z);
     return obtuse ? PI - 2.0 * s * (1.0 - z * q + c) : 2.0 * s * z * (c - q);
 }
@@ -173,6 +179,8 @@ float irradiance_by_seen(SeenLight seen) {
     return max(sum, 0.0);
 }
 
+#include "polygon_irradiance.glsl"
+
 // As `irradiance`, of a light that no cone keeps its shine in.
 float irradiance_everywhere(Light whole_light, vec3 position, vec3 normal) {
     Facing facing = facing_of(whole_light, position, normal);
@@ -185,10 +193,11 @@ float irradiance_everywhere(Light whole_light, vec3 position, vec3 normal) {
     vec3 far = abs(way);
     float scale = max(far.x, max(far.y, far.z)) + light.half_size.x + light.half_size.y;
     float inverse_scale = 1.0 / max(scale, 1e-18);
+    if (is_polygon(light)) return min(irradiance_by_polygon(light, way, normal, inverse_scale), 1e38);
     SeenLight seen = seen_light(light, way, normal, inverse_scale);
     if (!(seen.distance > 0.0)) return 0.0;
     seen.distance = max(seen.distance, SHORTEST);
-    float area = (seen.disc ? PI : 4.0) * seen.half_size.x * seen.half_size.y;
+    float area = light.area * seen.half_size.x * seen.half_size.y;
     // Inside a sphere of constant radiance a hemisphere of it is seen; the cap of `area` gives what its centre cannot.
     return min(irradiance_by_seen(seen) / area * inverse_scale * inverse_scale * facing.area, 1e38);
 }

@@ -39,19 +39,3 @@ bool clip_to_box(vec4 extent, inout vec3 a, inout vec3 b) {
     if (from > 0.0) a = a + from * way;
     return from < to && a.z > 0.0 && b.z > 0.0;
 }
-
-// Clips the segment a→b to the disc `rim`. False: nothing left.
-bool clip_to_rim(vec3 rim, inout vec2 a, inout vec2 b) {
-    vec2 way = b - a;
-    vec2 from_center = a - rim.xy;
-    float square = dot(way, way);
-    float along = dot(from_center, way);
-    float root = along * along - square * (dot(from_center, from_center) - rim.z * rim.z);
-    float half_chord = sqrt(max(root, 0.0));
-    float from = (-along - half_chord) / square;
-    float to = (half_chord - along) / square;
-    bool inside = root > 0.0 && max(from, 0.0) < min(to, 1.0);
-    if (to < 1.0) b = a + to * way;
-    if (from > 0.0) a = a + from * way;
-    return inside;
-}

@@ -54,7 +54,7 @@ float patch_area(View view, Receiver receiver, ivec2 texel, vec3 depths) {
     vec4 sides = vec4(lessThan(vec4(lower.y, -upper.x, -upper.y, lower.x), vec4(0.0))) * 2.0 - 1.0;
     // Called in one place: drivers inline it, and some take minutes for two.
     float area = 0.0;
-    if (OBLIQUE || DISC_LIGHT) area = area_in_quadrangle(view, corners, sides);
+    if (OBLIQUE || IS_CUT) area = area_in_quadrangle(view, corners, sides);
     else area = area_of_boxes(view, lower, upper);
     return area;
 }

@@ -3,30 +3,23 @@
 // is hidden, or else from 0, is the area that is hidden. Needs receiver.glsl, contour.glsl and map.glsl.
 
 #include "light_clip.glsl"
-
-readonly BUFFER(sectors);
-
-// The sub-light's area between direction 0 and the one with a perimeter parameter, from its table.
-float sector_to(View view, float parameter) {
-    float step = (parameter < 0.0 ? parameter + 8.0 : parameter) * (float(SECTOR_STEPS) / 8.0);
-    uint entry = min(uint(step), SECTOR_STEPS - 1u);
-    return mix(sectors[view.sector_first + entry], sectors[view.sector_first + entry + 1u], step - float(entry));
-}
+#include "cut.glsl"
 
 // Signed area of the part of the sub-light that lies beyond the segment a→b, seen from the centre,
 // within the segment's angle. a, b: homogeneous light coordinates. side: on which side of the segment the
 // centre lies, see `full_turns`.
 // A segment outside the light contributes exactly 0.
 float area_beyond(View view, vec3 a, vec3 b, float side) {
-    bool inside = clip_to_box(DISC_LIGHT ? view.extent : vec4(-1.0, -1.0, 1.0, 1.0), a, b);
+    bool inside = clip_to_box(IS_CUT ? view.extent : vec4(-1.0, -1.0, 1.0, 1.0), a, b);
     vec2 start = a.xy / a.z;
     vec2 end = b.xy / b.z;
     if (DISC_LIGHT) inside = clip_to_rim(view.rim, start, end) && inside;
+    if (EDGES > 0u) inside = clip_to_edges(view, start, end) && inside;
     float from = perimeter(start);
     float to = perimeter(end);
     // A square's area between centre and border is ½ per unit of perimeter.
     float sector = 0.5 * (to - from + 8.0 * full_turns(from, to, side));
-    if (DISC_LIGHT) {
+    if (IS_CUT) {
         // The table starts at direction 0 while parameters of directions just below it are negative.
         float cut = float(from < 0.0) - float(to < 0.0);
         sector = sector_to(view, to) - sector_to(view, from) + view.area * (full_turns(from, to, side) + cut);

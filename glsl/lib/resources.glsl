@@ -24,6 +24,7 @@
 #define RESOURCE_views ARRAY(1, View, views)
 #define RESOURCE_fits ARRAY(2, Fit, fits)
 #define RESOURCE_lights ARRAY(3, Light, lights)
+#define RESOURCE_corners ARRAY(70, vec2, corners)
 #define RESOURCE_counters STRUCT(4, Counters, counters)
 
 // The scene.

@@ -20,6 +20,7 @@ const uint SAMPLE_COUNT = LIGHT_SAMPLES * LIGHT_SAMPLES;
 #include "scan.glsl"
 #include "microrect.glsl"
 #include "occluder_box.glsl"
+#include "cut.glsl"
 
 // [0, 1)² Where a stratum's sample stands in it; the same for all pixels, so that there is no noise.
 vec2 jitter(uint stratum) {
@@ -35,8 +36,6 @@ vec2 light_sample(View view, uvec2 stratum) {
     vec2 share = (vec2(stratum) + jitter(stratum.y * LIGHT_SAMPLES + stratum.x)) / float(LIGHT_SAMPLES);
     return mix(view.extent.xy, view.extent.zw, share);
 }
-
-bool on_light(View view, vec2 q) { return !DISC_LIGHT || distance(q, view.rim.xy) <= view.rim.z; }
 
 // Whether q lies in the triangle a, b, c of either orientation.
 bool in_triangle(vec2 q, vec2 a, vec2 b, vec2 c) {

@@ -81,6 +81,18 @@ pub unsafe fn extended<T: Structure, N: Structure>(pointer: *const T) -> CallRes
     Ok((structure, chained))
 }
 
+/// A structure that the caller has filled, and the one that extends it, if one does. Takes no memory.
+///
+/// # Safety
+/// As for [`input`], for both.
+pub unsafe fn extended_once<T: Structure, N: Structure>(
+    pointer: *const T,
+) -> CallResult<(T, Option<N>)> {
+    let next = check_head(pointer)?.cast::<N>();
+    // SAFETY: checked, and the caller's promise.
+    Ok((unsafe { *pointer }, unsafe { optional(next) }?))
+}
+
 /// A structure that the caller has filled.
 ///
 /// # Safety
@@ -168,6 +180,23 @@ pub unsafe fn structures_of<'a, T: Structure>(
     }
     // SAFETY: the caller's promise; each was looked at.
     unsafe { slice(pointer, count as u64, name) }
+}
+
+/// `count` values that are made of the places of structures in the caller's array.
+///
+/// # Safety
+/// `make` asks no more than what the caller promises of each place.
+pub unsafe fn each<T, R>(
+    pointer: *const T,
+    count: u64,
+    name: &str,
+    make: impl Fn(*const T) -> CallResult<R>,
+) -> CallResult<Vec<R>> {
+    let count = check_pointer(pointer, count, name)?;
+    // SAFETY: the caller's promise: so many are there.
+    (0..count)
+        .map(|index| make(unsafe { pointer.add(index) }))
+        .collect()
 }
 
 /// Copies `values` to the caller's memory, which must have room for exactly as many.

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::call_result::{CallResult, Fault};
-use super::check::{self, extended};
+use super::check::{self, extended, extended_once};
 use super::types::*;
 use crate::scene::{AreaLight, Beam, Camera, LightShape};
 use crate::technique::{KNOBS, Knob, Settings, Technique};
@@ -141,9 +141,20 @@ pub fn camera(given: &hs_camera) -> CallResult<Camera> {
     Ok(camera)
 }
 
-/// A light; takes no memory.
-pub fn light(given: &hs_light) -> CallResult<AreaLight> {
+/// A light; takes no memory unless it is refused.
+///
+/// # Safety
+/// As for [`extended_once`], and a polygon's corners are as many as it says.
+pub unsafe fn light(pointer: *const hs_light) -> CallResult<AreaLight> {
+    // SAFETY: the caller's promise, here and below.
+    let (given, polygon): (hs_light, Option<hs_polygon>) = unsafe { extended_once(pointer) }?;
     reserved(given.reserved)?;
+    if polygon.is_some() && given.shape != HS_LIGHT_POLYGON {
+        return Err(Fault::invalid(
+            "an hs_polygon extends a light whose shape is HS_LIGHT_POLYGON",
+        ));
+    }
+    let mut center = DVec3::from_array(given.center);
     let shape = match given.shape {
         HS_LIGHT_RECT => LightShape::Rect {
             u: DVec3::from_array(given.u),
@@ -160,6 +171,17 @@ pub fn light(given: &hs_light) -> CallResult<AreaLight> {
             direction: DVec3::from_array(given.normal),
             angle_deg: given.radius,
         },
+        HS_LIGHT_POLYGON => {
+            let polygon = polygon.ok_or_else(|| {
+                Fault::invalid("hs_light: next must be the hs_polygon of HS_LIGHT_POLYGON")
+            })?;
+            // A DVec3 is three f64, in C's layout.
+            let corners: *const DVec3 = polygon.corners.cast();
+            let corners = unsafe { check::slice(corners, polygon.corner_count, "corners") }?;
+            let (middle, shape) = LightShape::polygon(corners)?;
+            center = middle;
+            shape
+        }
         other => {
             return Err(Fault::invalid(format!(
                 "the shape of a light is one of HS_LIGHT_..., not {other}"
@@ -173,7 +195,7 @@ pub fn light(given: &hs_light) -> CallResult<AreaLight> {
     });
     let light = AreaLight {
         name: String::new(),
-        center: DVec3::from_array(given.center),
+        center,
         shape,
         color: Vec3::from_array(given.color),
         // NaN is not below 0, and is refused.

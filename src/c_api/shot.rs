@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::call::call;
 use super::call_result::{CallResult, Fault};
-use super::check::{input, output, path, place, structures_of};
+use super::check::{each, input, output, path, place};
 use super::context::{CONTEXTS, Held};
 use super::convert;
 use super::handles::Registry;
@@ -161,11 +161,8 @@ pub unsafe extern "C" fn hs_shot_set_lights(
             )));
         }
         // SAFETY: the caller's promise.
-        let given = unsafe { structures_of(lights, count, "lights") }?;
-        shot.lights = given
-            .iter()
-            .map(convert::light)
-            .collect::<CallResult<_>>()?;
+        let light = |place| unsafe { convert::light(place) };
+        shot.lights = unsafe { each(lights, count, "lights", light) }?;
         Ok(())
     })
 }

@@ -60,6 +60,8 @@ pub const HS_TYPE_PASS: u32 = 13;
 pub const HS_TYPE_REFERENCE_INFO: u32 = 14;
 /// hs_knob
 pub const HS_TYPE_KNOB: u32 = 15;
+/// hs_polygon
+pub const HS_TYPE_POLYGON: u32 = 16;
 
 /// Run under the Khronos validation layer with synchronization validation; see hs_context_validation_messages.
 pub const HS_CONTEXT_VALIDATE: u32 = 1;

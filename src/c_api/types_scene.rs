@@ -153,6 +153,8 @@ pub const HS_LIGHT_DISC: u32 = 1;
 pub const HS_LIGHT_SPHERE: u32 = 2;
 /// `shape` of a light: a sun, light from infinity.
 pub const HS_LIGHT_SUN: u32 = 3;
+/// `shape` of a light: a convex polygon, whose corners an hs_polygon in `next` gives.
+pub const HS_LIGHT_POLYGON: u32 = 4;
 
 /// A light of constant radiance; flat ones are one-sided. Without extent it is a point and its shadow is hard; a disc with a normal is
 /// the limit of small discs then, and other points shine to all sides alike.
@@ -163,9 +165,9 @@ pub struct hs_light {
     pub r#type: u32,
     /// sizeof(hs_light)
     pub size: u32,
-    /// NULL
+    /// NULL; the hs_polygon of HS_LIGHT_POLYGON.
     pub next: *const c_void,
-    /// [scene units] Of a sun without meaning.
+    /// [scene units] Of a sun or a polygon without meaning.
     pub center: [f64; 3],
     /// [scene units] Half-axis of a rectangle.
     pub u: [f64; 3],
@@ -189,6 +191,23 @@ pub struct hs_light {
     pub cone_deg: [f64; 2],
 }
 
+/// The corners of a light that is a polygon, chained to hs_light.next. Read during the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hs_polygon {
+    /// HS_TYPE_POLYGON
+    pub r#type: u32,
+    /// sizeof(hs_polygon)
+    pub size: u32,
+    /// NULL
+    pub next: *const c_void,
+    /// [scene units] x, y, z of each corner. In one plane and convex; the light shines to the side from which they run
+    /// counter-clockwise.
+    pub corners: *const f64,
+    /// [3, 16]
+    pub corner_count: u64,
+}
+
 structures! {
     hs_scene_info = HS_TYPE_SCENE_INFO,
     hs_material = HS_TYPE_MATERIAL,
@@ -196,4 +215,5 @@ structures! {
     hs_scene_counts = HS_TYPE_SCENE_COUNTS,
     hs_camera = HS_TYPE_CAMERA,
     hs_light = HS_TYPE_LIGHT,
+    hs_polygon = HS_TYPE_POLYGON,
 }

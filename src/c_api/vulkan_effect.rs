@@ -56,7 +56,7 @@ pub unsafe extern "C" fn hs_vk_effect_create(
         let host = HostFrame {
             size: (info.width, info.height),
             surface: choice(&surfaces, info.surface, "surface")?,
-            light: convert::light(&unsafe { input(info.light) }?)?,
+            light: unsafe { convert::light(info.light) }?,
             settings,
             casters: choice(&all, info.casters, "casters")?,
             side_faces: flag(info.side_faces, "side_faces")?,

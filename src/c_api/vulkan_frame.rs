@@ -3,7 +3,7 @@
 use ash::vk;
 
 use super::call_result::{CallResult, Fault};
-use super::check::{input, structures_of};
+use super::check::structures_of;
 use super::convert;
 use super::structure::Structure;
 use super::types::HS_NOT_READY;
@@ -33,7 +33,7 @@ pub unsafe fn record(
         return Err(not_ready());
     }
     // SAFETY: the caller's promise, here and below.
-    let light = convert::light(&unsafe { input(frame.light) }?)?;
+    let light = unsafe { convert::light(frame.light) }?;
     let count = frame.instance_count.into();
     let instances = unsafe { structures_of(frame.instances, count, "instances") }?;
     let maps = unsafe { structures_of(frame.maps, frame.map_count.into(), "maps") }?;

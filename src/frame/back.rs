@@ -54,6 +54,7 @@ pub const OCCLUSION: &[Resource] = &[Resource::new("occlusion", |s| {
 })];
 
 pub const RESOURCES: &[Resource] = &[
+    Resource::copied("corners", |s| Shape::array::<[f32; 2]>(s.corners.into())),
     Resource::copied("visibility", |s| {
         Shape::array::<f32>(s.pixels() * u64::from(s.lights))
     }),

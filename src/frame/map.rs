@@ -4,7 +4,7 @@ use super::pass::{Domain, Drawn, Lent, Pass, Work};
 use super::resource::{Resource, Shape, Sizes};
 use super::{Casters, Density};
 use crate::gpu::ImageKind;
-use crate::shared::{self, Fit, HierarchyGroups, SECTOR_STEPS, View};
+use crate::shared::{self, Fit, HierarchyGroups, View};
 
 /// [texel] Frame of the shadow map that stays empty, so that contours close inside the map.
 const MARGIN: u32 = 1;
@@ -248,7 +248,7 @@ pub const VIEW_RESOURCES: &[Resource] = &[
     }),
 ];
 
-/// The sector tables of sub-lights that a disc's rim cuts.
+/// The sector tables of sub-lights that a disc's rim or a polygon's sides cut, with these sides.
 pub const SECTORS: &[Resource] = &[Resource::copied("sectors", |s| {
-    Shape::array::<f32>(u64::from(s.sector_tables) * u64::from(SECTOR_STEPS + 1))
+    Shape::array::<f32>(s.sector_entries)
 })];

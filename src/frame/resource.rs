@@ -50,8 +50,10 @@ pub struct Sizes {
     pub tells_casters: bool,
     pub lights: u32,
     pub views: u32,
-    /// Of the views' sub-lights, those with a sector table.
-    pub sector_tables: u32,
+    /// [entry] Of the sector tables of the views' sub-lights.
+    pub sector_entries: u64,
+    /// Of polygons.
+    pub corners: u32,
     /// [texel] Side of the shadow map; 0 = no view needs one.
     pub map: u32,
     /// [bit] 16 or 32, of a bound in the hierarchy over it.

@@ -45,7 +45,7 @@ impl HostFrame {
         self.light.validate()?;
         if matches!(self.light.spread(), Spread::Sun | Spread::Sphere) {
             return Err(Error::Unsupported(
-                "an effect takes rectangles, discs and points; a renderer takes suns and spheres as well".into(),
+                "an effect takes rectangles, discs, polygons and points; a renderer takes suns and spheres as well".into(),
             ));
         }
         self.settings.validate()?;
@@ -152,18 +152,25 @@ impl Plan {
     pub fn place(&mut self, light: &AreaLight) -> Result<()> {
         let placed = placed(light);
         for planned in &mut self.lights {
-            let (round, spread) = (light.is_round(), light.spread() as u32);
+            let spread = light.spread() as u32;
             let recipe_changes = light.is_point() != (planned.light.half_size == [0.0; 2])
                 || spread != planned.light.spread;
-            if recipe_changes || u32::from(round) != planned.light.round {
+            if recipe_changes || !light.outline().is_like(&planned.outline) {
                 return Err(Error::Invalid(
                     "the light has another shape than the one that the effect was made for".into(),
                 ));
             }
             let views =
                 planned.light.view_first..planned.light.view_first + planned.light.view_count;
-            let weight_sum = planned.light.weight_sum;
-            planned.light = whole_light(placed.origin, light, placed.intensity, weight_sum, views);
+            let (weight_sum, corner_first) = (planned.light.weight_sum, planned.light.corner_first);
+            planned.light = whole_light(
+                placed.origin,
+                light,
+                placed.intensity,
+                weight_sum,
+                views,
+                corner_first,
+            );
             for set in &mut planned.sets {
                 let params = placed.map_params(&set.settings, self.levels);
                 for view in &mut set.views {

@@ -1,15 +1,13 @@
 //! What is to be done about a light: which parts of it have views, and what runs in them.
 
-use std::sync::Arc;
-
 use glam::{DVec2, DVec3};
 
 use super::survey::LightCoverage;
 use super::views::{self, MapParams, ViewPose};
-use crate::scene::{AreaLight, Ball};
+use crate::scene::{AreaLight, Ball, Outline};
 use crate::shared::{self, View};
 use crate::shot::Shot;
-use crate::sub_light::{Part, evenly_spread};
+use crate::sub_light::{Cut, Part, evenly_spread};
 use crate::technique::{POINT_REACH, Recipe, Settings};
 
 /// What is to be done about a light.
@@ -17,6 +15,8 @@ use crate::technique::{POINT_REACH, Recipe, Settings};
 pub struct LightPlan {
     pub name: String,
     pub light: shared::Light,
+    /// What it was planned with.
+    pub outline: Outline,
     pub lighting: Lighting,
     /// None without views.
     pub sets: Vec<ViewSet>,
@@ -74,16 +74,19 @@ pub struct ViewPlan {
     pub view: View,
     /// What the view was planned from.
     pub pose: ViewPose,
-    /// Sector table of a sub-light that a disc's rim cuts.
-    pub sectors: Option<Arc<[f32]>>,
     /// The map is not parallel to the light.
     pub oblique: bool,
 }
 
 impl ViewPlan {
-    /// Whether a disc's rim cuts the sub-light.
-    pub fn is_round(&self) -> bool {
-        self.sectors.is_some()
+    /// What cuts the sub-light out of its cell.
+    pub fn cut(&self) -> &Cut {
+        self.pose.part.cut_by()
+    }
+
+    /// See [`Part::table`].
+    pub fn table(&self) -> &[f32] {
+        self.pose.part.table()
     }
 }
 
@@ -148,6 +151,8 @@ pub(super) struct Numbering {
     views: u32,
     /// [entry] Of the sector tables.
     sectors: u32,
+    /// [corner] Of polygons.
+    corners: u32,
 }
 
 impl<'a> Draft<'a> {
@@ -199,13 +204,11 @@ impl<'a> Draft<'a> {
             let params = placed.map_params(&set.settings, levels);
             let first = numbering.views;
             let view = |pose: ViewPose| {
-                let sectors = pose.sectors();
                 let view = pose.view(&params, placed.light, numbering.sectors);
                 numbering.views += 1;
-                numbering.sectors += sectors.as_ref().map_or(0, |table| table.len() as u32);
+                numbering.sectors += pose.part.table().len() as u32;
                 ViewPlan {
                     view,
-                    sectors,
                     oblique: pose.face != 0,
                     pose,
                 }
@@ -224,6 +227,8 @@ impl<'a> Draft<'a> {
             name => name.to_owned(),
         };
         let views = view_first..numbering.views;
+        let (outline, corner_first) = (light.outline(), numbering.corners);
+        numbering.corners += outline.corners().len() as u32;
         LightPlan {
             name,
             light: views::whole_light(
@@ -232,7 +237,9 @@ impl<'a> Draft<'a> {
                 placed.intensity,
                 self.weight_sum,
                 views,
+                corner_first,
             ),
+            outline,
             lighting: self.lighting,
             sets,
             part_count: self.part_count,

@@ -79,7 +79,8 @@ impl Plan {
 
     fn sizes(&self, views_at_once: u32, inventory: Inventory) -> Sizes {
         let most = |of: fn(&Recipe) -> u32| self.sets().map(|set| of(&set.recipe)).max();
-        let tables = self.views().filter(|view| view.sectors.is_some());
+        let entries = self.views().map(|view| view.table().len() as u64);
+        let corners = (self.lights.iter()).map(|light| light.light.corner_count);
         Sizes {
             front: self.front,
             casters: self.casters,
@@ -93,7 +94,8 @@ impl Plan {
             tells_casters: self.tells_casters,
             lights: self.lights.len() as u32,
             views: self.views().count() as u32,
-            sector_tables: tables.count() as u32,
+            sector_entries: entries.sum(),
+            corners: corners.sum(),
             map: self.map,
             bounds_bits: self.bounds_bits,
             levels: self.levels,

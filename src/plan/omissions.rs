@@ -3,6 +3,7 @@
 use super::maps::hierarchy_levels;
 use super::{Lighting, Omission, Plan};
 use crate::frame::{Domain, Scope, counts};
+use crate::scene::Outline;
 use crate::shot::Shot;
 
 impl Plan {
@@ -99,7 +100,10 @@ impl Plan {
         if parts < cells && !shot.lights[index].is_point() {
             self.omit(
                 format!("{name}: {} sub-lights", cells - parts),
-                "the disc's rim leaves nothing of them",
+                match shot.lights[index].outline() {
+                    Outline::Polygon(_) => "the polygon's sides leave nothing of them",
+                    _ => "the disc's rim leaves nothing of them",
+                },
             );
         }
         if !recipe.kernels && !shot.lights[index].is_point() && near < parts {

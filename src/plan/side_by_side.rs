@@ -8,6 +8,7 @@ use super::memory::peak_bytes;
 use super::{Plan, ViewPlan, ViewSet};
 use crate::frame::{Inventory, Scope};
 use crate::gpu::Limits;
+use crate::sub_light::Cut;
 use crate::technique::{Recipe, Settings};
 
 /// [byte] That views side by side take by default, beside the first.
@@ -74,9 +75,8 @@ impl ViewSet {
     /// Views in a row that run the same but for their face.
     fn runs(&self) -> impl Iterator<Item = Range<usize>> {
         let mut first = 0;
-        let runs = self
-            .views
-            .chunk_by(|a: &ViewPlan, b: &ViewPlan| a.is_round() == b.is_round());
+        let is_whole = |view: &ViewPlan| *view.cut() == Cut::Nothing;
+        let runs = (self.views).chunk_by(move |a, b| is_whole(a) == is_whole(b));
         runs.map(move |run| {
             let start = first;
             first += run.len();

@@ -4,7 +4,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{Cone, Side, mapped};
+use crate::scene::{Cone, Outline, Side, mapped};
 use crate::shared::{CORNER_ROUNDING, PLANE_ROUNDING};
 use crate::shot::Shot;
 use crate::sub_light::Part;
@@ -58,7 +58,7 @@ pub struct Placed {
     center: DVec3,
     axes: [DVec3; 3],
     half: DVec2,
-    round: bool,
+    outline: Outline,
     /// See [`Side::parallel`].
     parallel: f64,
     /// [scene units] Height up to which surfaces are the lamp's own.
@@ -74,7 +74,7 @@ impl Placed {
             touch,
             axes: [u, v, n],
             half: light.half_size().into(),
-            round: light.is_round(),
+            outline: light.outline(),
             parallel: side.parallel,
         }
     }
@@ -106,12 +106,7 @@ impl Placed {
 
     /// How far the light reaches from its centre along a direction in its own frame.
     fn reach(&self, direction: DVec3) -> f64 {
-        let along = direction.truncate().abs() * self.half;
-        if self.round {
-            along.length()
-        } else {
-            along.x + along.y
-        }
+        self.outline.reach(direction.truncate() * self.half)
     }
 }
 

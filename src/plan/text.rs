@@ -74,6 +74,12 @@ impl Plan {
             }
             (true, _) => "point".to_owned(),
             (_, true) => format!("disc of radius {half_u:.3}"),
+            _ if light.light.corner_count > 0 => format!(
+                "polygon of {} corners, {:.3} x {:.3}",
+                light.light.corner_count,
+                2.0 * half_u,
+                2.0 * half_v
+            ),
             _ => format!("rectangle of {:.3} x {:.3}", 2.0 * half_u, 2.0 * half_v),
         };
         write!(out, "\n{}: {shape}, ", light.name)?;

@@ -1,14 +1,13 @@
 //! Lights and their views as the device sees them.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::scene::{AreaLight, Ball, Spread};
+use crate::scene::{AreaLight, Ball, Outline, Spread};
 use crate::shared::{self, ALL_CONES, View};
 use crate::shot::Shot;
-use crate::sub_light::Part;
+use crate::sub_light::{Cut, Part};
 
 /// What a light's views are fitted to, beside the light itself.
 #[derive(Debug, Clone, Copy)]
@@ -40,12 +39,6 @@ pub struct ViewPose {
 }
 
 impl ViewPose {
-    /// Sector table of the part, if a rim cuts it.
-    pub fn sectors(&self) -> Option<Arc<[f32]>> {
-        let sectors = self.part.sectors();
-        (!sectors.is_empty()).then(|| sectors.clone())
-    }
-
     /// The view where the light stands. Does not allocate.
     pub fn view(&self, params: &MapParams, light: &AreaLight, sector_first: u32) -> View {
         let side = light.side(self.side, &params.ball);
@@ -59,9 +52,10 @@ impl ViewPose {
             _ => [u, n, -v],
         };
         let array = |vector: DVec3| -> [f32; 3] { vector.as_vec3().into() };
-        let rim = part.rim.map_or([0.0; 3], |(center, radius)| {
-            [center.x as f32, center.y as f32, radius as f32]
-        });
+        let rim = match part.cut {
+            Cut::Rim { center, radius } => [center.x as f32, center.y as f32, radius as f32],
+            Cut::Nothing | Cut::Edges(_) => [0.0; 3],
+        };
         let (half, (lower, upper)) = (part.half_size, part.extent);
         // The sun's parts differ in their rays' directions.
         let (center, ray) = match side.parallel {
@@ -118,7 +112,9 @@ pub fn whole_light(
     intensity: [f32; 3],
     weight_sum: f32,
     views: std::ops::Range<u32>,
+    corner_first: u32,
 ) -> shared::Light {
+    let outline = light.outline();
     let (u, v, n) = light.frame();
     let half = light.half_size();
     let (beam_start, beam_slope) = light.beam.map_or((0.0, 0.0), |beam| beam.border());
@@ -128,7 +124,10 @@ pub fn whole_light(
         v: v.as_vec3().into(),
         n: n.as_vec3().into(),
         half_size: [half.0 as f32, half.1 as f32],
-        round: u32::from(light.is_round()),
+        round: u32::from(outline == Outline::Disc),
+        area: outline.area() as f32,
+        corner_first,
+        corner_count: outline.corners().len() as u32,
         weight_sum,
         spread: light.spread() as u32,
         intensity,

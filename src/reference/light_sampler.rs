@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use crate::scene::{AreaLight, Ball, Beam, LightShape, Spread};
+use crate::scene::{AreaLight, Ball, Beam, LightShape, Outline, Spread, polygon_area};
 use crate::shared::HORIZON_ROUNDING;
 use crate::{Error, Result};
 
@@ -16,7 +16,7 @@ pub struct Emitter {
     axes: [DVec3; 2],
     /// The side it shines to; None where the shape has no plane (a point, a line): to all sides.
     normal: Option<DVec3>,
-    disc: bool,
+    outline: Outline,
     beam: Option<Beam>,
     /// Around the scene, relative to the eye.
     ball: Ball,
@@ -31,7 +31,9 @@ impl Emitter {
         let (u, v, n) = light.frame();
         let (half_u, half_v) = light.half_size();
         let (axes, normal) = match light.shape {
-            LightShape::Rect { u, v } => ([u, v], u.cross(v).try_normalize()),
+            LightShape::Rect { u, v } | LightShape::Polygon { u, v, .. } => {
+                ([u, v], u.cross(v).try_normalize())
+            }
             LightShape::Disc { normal, radius } => {
                 let direction = normal.try_normalize();
                 if radius > 0.0 && direction.is_none() {
@@ -57,7 +59,7 @@ impl Emitter {
             spread: light.spread(),
             axes,
             normal,
-            disc: light.is_round(),
+            outline: light.outline(),
             beam: light.beam,
             ball: Ball {
                 center: ball.center - origin,
@@ -109,7 +111,11 @@ impl Emitter {
     /// [Shirley and Chiu 1997], which keeps neighbours together.
     pub fn point(&self, a: f64, b: f64) -> DVec3 {
         let (s, t) = (2.0 * a - 1.0, 2.0 * b - 1.0);
-        let (s, t) = if self.disc { concentric(s, t) } else { (s, t) };
+        let (s, t) = match &self.outline {
+            Outline::Square => (s, t),
+            Outline::Disc => concentric(s, t),
+            Outline::Polygon(corners) => corners.place(DVec2::new(a, b)).into(),
+        };
         self.center + self.axes[0] * s + self.axes[1] * t
     }
 
@@ -132,19 +138,17 @@ impl Emitter {
         let magnitude = (to_center.abs() + self.center.abs()).element_sum();
         let rounding = f64::from(HORIZON_ROUNDING) * magnitude;
         let height = normal.dot(to_center);
-        let [a, b] = self.axes.map(|axis| normal.dot(axis));
-        let reach = match self.disc {
-            true => a.hypot(b),
-            false => a.abs() + b.abs(),
-        };
+        let rise = DVec2::from(self.axes.map(|axis| normal.dot(axis)));
+        let reach = self.outline.reach(rise);
         let in_front_of_light =
             (self.normal).is_none_or(|shines| -shines.dot(to_center) > rounding);
         if !in_front_of_light || height + reach <= rounding {
             return 0.0;
         }
-        match self.disc {
-            true => disc_share(height, reach),
-            false => square_share(height, a, b),
+        match &self.outline {
+            Outline::Disc => disc_share(height, reach),
+            Outline::Square => polygon_share(&SQUARE, height, rise),
+            Outline::Polygon(corners) => polygon_share(corners, height, rise),
         }
     }
 }
@@ -173,33 +177,30 @@ fn disc_share(height: f64, reach: f64) -> f64 {
     1.0 - (x.acos() - x * (1.0 - x * x).sqrt()) / PI
 }
 
-/// The share of the square [−1, 1]² on which height + a s + b t > 0: the square clipped by the line,
-/// its area by the shoelace formula.
-fn square_share(height: f64, a: f64, b: f64) -> f64 {
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let above = |[s, t]: [f64; 2]| height + a * s + b * t;
+const SQUARE: [DVec2; 4] = [
+    DVec2::NEG_ONE,
+    DVec2::new(1.0, -1.0),
+    DVec2::ONE,
+    DVec2::new(-1.0, 1.0),
+];
+
+/// The share of a polygon on which height + rise · x > 0: the polygon clipped by the line.
+fn polygon_share(corners: &[DVec2], height: f64, rise: DVec2) -> f64 {
+    let above = |corner: DVec2| height + rise.dot(corner);
     if corners.iter().all(|&corner| above(corner) > 0.0) {
         return 1.0;
     }
-    let mut clipped: Vec<[f64; 2]> = Vec::with_capacity(5);
-    for (index, &from) in corners.iter().enumerate() {
-        let to = corners[(index + 1) % 4];
+    let mut clipped: Vec<DVec2> = Vec::with_capacity(corners.len() + 1);
+    for (&from, &to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
         let (h0, h1) = (above(from), above(to));
         if h0 > 0.0 {
             clipped.push(from);
         }
         if (h0 > 0.0) != (h1 > 0.0) {
-            let share = h0 / (h0 - h1);
-            clipped.push([0, 1].map(|k| from[k] + (to[k] - from[k]) * share));
+            clipped.push(from + (to - from) * (h0 / (h0 - h1)));
         }
     }
-    let next = clipped.iter().cycle().skip(1);
-    let doubled: f64 = clipped
-        .iter()
-        .zip(next)
-        .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
-        .sum();
-    (doubled / 8.0).clamp(0.0, 1.0)
+    (polygon_area(&clipped) / polygon_area(corners)).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -213,14 +214,19 @@ mod tests {
 
     #[test]
     fn shares_by_hand() {
-        assert_eq!(square_share(1.0, 0.0, 0.0), 1.0);
-        assert_eq!(square_share(-1.0, 0.0, 0.0), 0.0);
-        assert_eq!(square_share(0.0, 0.0, 0.0), 0.0);
-        assert_eq!(square_share(0.0, 1.0, 0.0), 0.5);
-        assert_eq!(square_share(0.0, -2.0, 2.0), 0.5);
-        assert_eq!(square_share(0.5, 1.0, 0.0), 0.75);
+        let square_share = |height, rise: [f64; 2]| polygon_share(&SQUARE, height, rise.into());
+        assert_eq!(square_share(1.0, [0.0, 0.0]), 1.0);
+        assert_eq!(square_share(-1.0, [0.0, 0.0]), 0.0);
+        assert_eq!(square_share(0.0, [0.0, 0.0]), 0.0);
+        assert_eq!(square_share(0.0, [1.0, 0.0]), 0.5);
+        assert_eq!(square_share(0.0, [-2.0, 2.0]), 0.5);
+        assert_eq!(square_share(0.5, [1.0, 0.0]), 0.75);
         // All but a corner triangle with legs of 1.
-        assert_eq!(square_share(1.0, 1.0, 1.0), 0.875);
+        assert_eq!(square_share(1.0, [1.0, 1.0]), 0.875);
+        let triangle = [DVec2::NEG_ONE, DVec2::X, DVec2::Y];
+        assert_eq!(polygon_share(&triangle, 1.0, DVec2::new(0.5, 0.0)), 1.0);
+        // Cut in halves through a corner.
+        assert!((polygon_share(&triangle, 0.0, DVec2::new(1.0, -1.0)) - 0.5).abs() < 1e-15);
         assert_eq!(disc_share(0.0, 0.0), 0.0);
         assert_eq!(disc_share(2.0, 1.0), 1.0);
         assert_eq!(disc_share(-2.0, 1.0), 0.0);

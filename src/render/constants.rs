@@ -4,6 +4,7 @@ use crate::frame::{Casters, Front, Pass};
 use crate::gpu::Constants;
 use crate::plan::{LightPlan, Plan, ViewPlan, ViewSet};
 use crate::shared::ALL_CONES;
+use crate::sub_light::Cut;
 
 /// What all passes of a frame have in common.
 pub fn of_frame(plan: &Plan) -> Constants {
@@ -16,6 +17,7 @@ pub fn of_frame(plan: &Plan) -> Constants {
             "GIVEN_SURFACE",
             matches!(plan.front, Front::Imported(_)).into(),
         ),
+        ("POLYGONS", (!plan.corners().is_empty()).into()),
         ("ORTHOGRAPHIC", plan.orthographic.into()),
         ("DENSE_LEVELS", plan.density.dense),
         ("SPARSEST", plan.density.sparsest),
@@ -37,7 +39,8 @@ pub fn of_frame(plan: &Plan) -> Constants {
 pub fn of_view(plan: &Plan, light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
     let mut constants: Constants = set.settings.constants().into_iter().collect();
     constants.extend([
-        ("DISC_LIGHT", u32::from(view.is_round())),
+        ("DISC_LIGHT", matches!(view.cut(), Cut::Rim { .. }).into()),
+        ("EDGES", view.cut().edges().len() as u32),
         ("OBLIQUE", view.oblique.into()),
         ("PARALLEL", (view.view.parallel > 0.0).into()),
         ("BEAM", (view.view.beam != [0.0; 3]).into()),

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use crate::error::Result;
 use crate::frame::Shape;
 use crate::gpu::{Buffer, Gpu, Image, Resources};
-use crate::plan::{Plan, PlannedResource};
+use crate::plan::{Plan, PlannedResource, ViewPlan};
 use crate::scene::{Material, Scene};
 use crate::shared::{self, Surface, View};
 use crate::shot::Shot;
@@ -64,8 +64,9 @@ fn create_planned(
     costs: shared::Costs,
     mut contents: Contents,
 ) -> Result<Resources> {
-    let tables = plan.views().filter_map(|view| view.sectors.as_deref());
+    let tables = plan.views().map(ViewPlan::table);
     contents.insert("sectors", tables.flat_map(bytes).collect());
+    contents.insert("corners", bytes(&plan.corners()));
     let mut resources = Resources::default();
     for planned in &plan.resources {
         create_one(gpu, planned, contents.get(planned.name), &mut resources)?;

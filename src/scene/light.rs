@@ -2,15 +2,16 @@
 
 mod beam;
 mod disc;
+mod outline;
+mod polygon;
 mod rect;
 mod sphere;
 mod sun;
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 
 pub use beam::Beam;
+pub use outline::{Corners, Outline, polygon_area};
 pub use sphere::Cone;
 pub use sun::{ANGLE_DEG as SUN_ANGLE_DEG, Ball, mapped};
 
@@ -21,14 +22,14 @@ use crate::{Error, Result};
 /// [share of a light's size] Height over its plane up to which a surface is the lamp's own.
 const TOUCH: f64 = 1e-7;
 
-/// A shape, as whatever works with lights sees it: a rectangle or a disc in a plane.
+/// A shape, as whatever works with lights sees it: what an outline leaves of a rectangle in a plane.
 #[derive(Debug, Clone, Copy)]
 struct Form {
     /// See [`AreaLight::frame`].
     frame: (DVec3, DVec3, DVec3),
     /// See [`AreaLight::half_size`].
     half_size: (f64, f64),
-    round: bool,
+    outline: Outline,
     spread: Spread,
 }
 
@@ -82,11 +83,23 @@ fn radius_fault(radius: f64) -> Option<&'static str> {
     (!sane).then_some("its radius must be from 0 to 1e18")
 }
 
+impl LightShape {
+    /// The centre and the shape of a light that is a convex polygon of 3 to 16 corners \[scene units, world\]. It shines to the side from
+    /// which they run counter-clockwise.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when they are too few or too many, not finite, the same, on a line, not in a plane, or not convex.
+    pub fn polygon(corners: &[DVec3]) -> Result<(DVec3, Self)> {
+        polygon::around(corners).map_err(Error::Invalid)
+    }
+}
+
 impl AreaLight {
     fn form(&self) -> Form {
         match self.shape {
             LightShape::Rect { u, v } => rect::form(u, v),
             LightShape::Disc { normal, radius } => disc::form(normal, radius),
+            LightShape::Polygon { u, v, corners } => polygon::form(u, v, corners),
             LightShape::Sphere { radius } => sphere::form(radius),
             LightShape::Sun {
                 direction,
@@ -97,7 +110,7 @@ impl AreaLight {
 
     fn fault_of_shape(&self) -> Option<&'static str> {
         match self.shape {
-            LightShape::Rect { u, v } => rect::fault(u, v),
+            LightShape::Rect { u, v } | LightShape::Polygon { u, v, .. } => rect::fault(u, v),
             LightShape::Disc { normal, radius } => disc::fault(normal, radius),
             LightShape::Sphere { radius } => sphere::fault(radius),
             LightShape::Sun {
@@ -108,7 +121,7 @@ impl AreaLight {
     }
 
     /// Unit vectors (u, v, normal) with normal = u × v the direction in which the light shines. A
-    /// rectangle's u lies along its own; a disc's is arbitrary, but the same in every run. A light
+    /// rectangle's u lies along its own, a polygon's along one of its sides; a disc's is arbitrary, but the same in every run. A light
     /// without direction gets some frame.
     pub fn frame(&self) -> (DVec3, DVec3, DVec3) {
         self.form().frame
@@ -120,9 +133,9 @@ impl AreaLight {
         self.form().half_size
     }
 
-    /// Whether it is a disc, or is seen as one.
-    pub fn is_round(&self) -> bool {
-        self.form().round
+    /// What bounds it within its half sizes; of a sphere, what it is seen as.
+    pub fn outline(&self) -> Outline {
+        self.form().outline
     }
 
     pub fn spread(&self) -> Spread {
@@ -203,10 +216,7 @@ impl AreaLight {
     /// [scene units²]
     pub fn area(&self) -> f64 {
         let (u, v) = self.half_size();
-        match self.is_round() {
-            false => 4.0 * u * v,
-            true => PI * u * v,
-        }
+        self.outline().area() * u * v
     }
 
     /// # Errors

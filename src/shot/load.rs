@@ -72,6 +72,7 @@ struct CameraFile {
 enum LightKind {
     Rect,
     Disc,
+    Polygon,
     Sphere,
     Sun,
 }
@@ -80,12 +81,13 @@ enum LightKind {
 struct LightFile {
     #[serde(rename = "type")]
     kind: LightKind,
-    /// Of all but suns.
+    /// Of all but polygons and suns.
     center: Option<[f64; 3]>,
     u: Option<[f64; 3]>,
     v: Option<[f64; 3]>,
     normal: Option<[f64; 3]>,
     radius: Option<f64>,
+    corners: Option<Vec<[f64; 3]>>,
     direction: Option<[f64; 3]>,
     angle_deg: Option<f64>,
     /// [degree] Inner and outer, from the direction of a disc's normal or of a sphere's "direction".
@@ -413,34 +415,48 @@ impl CameraFile {
 impl LightFile {
     fn into_light(self, index: usize) -> Result<AreaLight, String> {
         let missing = |key| format!("light {index} lacks {key:?}");
-        let center = match self.kind {
-            LightKind::Sun => [0.0; 3],
-            _ => self.center.ok_or_else(|| missing("center"))?,
+        let center = || {
+            self.center
+                .map(DVec3::from)
+                .ok_or_else(|| missing("center"))
         };
-        let shape = match self.kind {
-            LightKind::Rect => LightShape::Rect {
-                u: self.u.ok_or_else(|| missing("u"))?.into(),
-                v: self.v.ok_or_else(|| missing("v"))?.into(),
-            },
+        let (center, shape) = match self.kind {
+            LightKind::Rect => {
+                let center = center()?;
+                let u = self.u.ok_or_else(|| missing("u"))?.into();
+                let v = self.v.ok_or_else(|| missing("v"))?.into();
+                (center, LightShape::Rect { u, v })
+            }
             LightKind::Disc => {
+                let center = center()?;
                 let radius = self.radius.ok_or_else(|| missing("radius"))?;
                 // A point shines in all directions.
                 let normal = match self.normal {
                     None if radius == 0.0 => [0.0; 3],
                     normal => normal.ok_or_else(|| missing("normal"))?,
                 };
-                LightShape::Disc {
-                    normal: normal.into(),
-                    radius,
-                }
+                let normal = normal.into();
+                (center, LightShape::Disc { normal, radius })
             }
-            LightKind::Sphere => LightShape::Sphere {
-                radius: self.radius.ok_or_else(|| missing("radius"))?,
-            },
-            LightKind::Sun => LightShape::Sun {
-                direction: self.direction.ok_or_else(|| missing("direction"))?.into(),
-                angle_deg: self.angle_deg.unwrap_or(SUN_ANGLE_DEG),
-            },
+            LightKind::Polygon => {
+                let corners = self.corners.ok_or_else(|| missing("corners"))?;
+                let corners: Vec<DVec3> = corners.into_iter().map(DVec3::from).collect();
+                LightShape::polygon(&corners).map_err(|fault| format!("light {index}: {fault}"))?
+            }
+            LightKind::Sphere => {
+                let center = center()?;
+                let radius = self.radius.ok_or_else(|| missing("radius"))?;
+                (center, LightShape::Sphere { radius })
+            }
+            LightKind::Sun => {
+                let direction = self.direction.ok_or_else(|| missing("direction"))?.into();
+                let angle_deg = self.angle_deg.unwrap_or(SUN_ANGLE_DEG);
+                let shape = LightShape::Sun {
+                    direction,
+                    angle_deg,
+                };
+                (DVec3::ZERO, shape)
+            }
         };
         let beam = self.cone_deg.map(|[inner_deg, outer_deg]| {
             let direction = match self.kind {
@@ -455,7 +471,7 @@ impl LightFile {
         });
         Ok(AreaLight {
             name: format!("light {index}"),
-            center: center.into(),
+            center,
             shape,
             color: Vec3::from(self.color),
             intensity: self.intensity,

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::{Method, Recipe, Settings, hard, with};
-use crate::scene::AreaLight;
+use crate::scene::{AreaLight, Outline};
 use crate::sub_light::Part;
 
 pub struct ReferenceMaps;
@@ -61,9 +61,10 @@ fn points(light: &AreaLight, count: u32) -> Vec<Part> {
     let point = |index: u32| {
         let share = DVec2::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC)) * f64::from(index);
         let at = (share + 0.5).fract();
-        let at = match light.is_round() {
-            false => 2.0 * at - 1.0,
-            true => at.x.sqrt() * DVec2::from_angle(2.0 * PI * at.y),
+        let at = match light.outline() {
+            Outline::Square => 2.0 * at - 1.0,
+            Outline::Disc => at.x.sqrt() * DVec2::from_angle(2.0 * PI * at.y),
+            Outline::Polygon(corners) => corners.place(at),
         };
         Part::point(at)
     };

@@ -6,10 +6,9 @@ use glam::{Vec2, Vec3};
 
 use super::beam;
 use super::facing::Facing;
-use crate::shared::{ARCTANGENT, IRRADIANCE_NODES, Light, SPREAD_POINT};
-
-/// [scale] Shorter lengths are taken for it.
-const SHORTEST: f32 = 1e-9;
+use super::outline::corners_of;
+use super::polygon_irradiance::{self, SHORTEST, arc_polynomial};
+use crate::shared::{IRRADIANCE_NODES, Light, SPREAD_POINT};
 
 /// A light as a receiver in front of its plane sees it, in a frame of the plane whose origin is the foot of the receiver's
 /// perpendicular; lengths are divided by a scale that makes them at most 1.
@@ -25,12 +24,12 @@ struct SeenLight {
 
 /// [1 / scene units²] Irradiance at a point by a light whose radiance times area is 1.
 ///
-/// Relative error: below 1e-3 where the shader states it. Finite everywhere.
-pub fn irradiance(light: &Light, position: Vec3, normal: Vec3) -> f32 {
-    beam::share(light, position) * irradiance_everywhere(light, position, normal)
+/// Relative error: below 1e-3 where the shader states it. Finite everywhere. `corners`: of all polygons.
+pub fn irradiance(light: &Light, corners: &[[f32; 2]], position: Vec3, normal: Vec3) -> f32 {
+    beam::share(light, position) * irradiance_everywhere(light, corners, position, normal)
 }
 
-fn irradiance_everywhere(light: &Light, position: Vec3, normal: Vec3) -> f32 {
+fn irradiance_everywhere(light: &Light, corners: &[[f32; 2]], position: Vec3, normal: Vec3) -> f32 {
     let facing = Facing::new(light, position, normal);
     let (light, way) = (&facing.light, facing.way);
     if light.spread == SPREAD_POINT {
@@ -39,11 +38,19 @@ fn irradiance_everywhere(light: &Light, position: Vec3, normal: Vec3) -> f32 {
     }
     let scale = way.abs().max_element() + light.half_size[0] + light.half_size[1];
     let inverse_scale = 1.0 / scale.max(1e-18);
+    let corners = corners_of(light, corners);
+    if !corners.is_empty() {
+        let scaled = Light {
+            half_size: light.half_size.map(|half| half * inverse_scale),
+            ..*light
+        };
+        let found = polygon_irradiance::irradiance(&scaled, corners, way * inverse_scale, normal);
+        return (found * inverse_scale * inverse_scale).min(1e38);
+    }
     let mut seen = SeenLight::new(light, way, normal, inverse_scale);
     if seen.distance > 0.0 {
         seen.distance = seen.distance.max(SHORTEST);
-        let shape = if seen.disc { PI } else { 4.0 };
-        let area = shape * seen.half_size.x * seen.half_size.y;
+        let area = light.area * seen.half_size.x * seen.half_size.y;
         (seen.irradiance() / area * inverse_scale * inverse_scale * facing.area).min(1e38)
     } else {
         0.0
@@ -86,10 +93,7 @@ fn arc_excess(t: f32) -> f32 {
     let obtuse = t > 1.0;
     let s = if obtuse { 1.0 / t } else { t };
     let z = s * s;
-    let q = ARCTANGENT
-        .into_iter()
-        .rev()
-        .fold(0.0, |sum, coefficient| sum * z + coefficient);
+    let q = arc_polynomial(z);
     let c = 1.0 / (1.0 + z);
     if obtuse {
         PI - 2.0 * s * (1.0 - z * q + c)

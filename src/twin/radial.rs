@@ -8,7 +8,9 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::contour::{Segment, ShadowMap};
 use super::receiver::{Receiver, extents};
+use crate::scene::Corners;
 use crate::shared::{Fit, View};
+use crate::sub_light::Cut;
 
 /// Share of the receiver's height over the light plane. Occluders no higher than this below the receiver's
 /// own height project to where no light is, or to infinity.
@@ -23,6 +25,8 @@ pub struct SubLight<'a> {
     /// From the face's frame to the light's: half sizes along u and v, height over the light plane.
     to_light: DMat3,
     /// [half sizes] Its box.
+    extent: (DVec2, DVec2),
+    /// [half sizes] What its edges leave of it.
     outline: Polygon,
     rim: Option<Rim>,
     area: f64,
@@ -35,8 +39,8 @@ struct Rim {
 }
 
 impl<'a> SubLight<'a> {
-    /// `round`: a disc's rim bounds the sub-light.
-    pub fn new(view: &View, fit: &Fit, round: bool, map: ShadowMap<'a>) -> Self {
+    /// `cut`: what bounds the sub-light within its box.
+    pub fn new(view: &View, fit: &Fit, cut: &Cut, map: ShadowMap<'a>) -> Self {
         let double = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
         let to_world = DMat3::from_cols(double(view.right), double(view.up), double(view.forward));
         let from_world = DMat3::from_cols(
@@ -47,16 +51,22 @@ impl<'a> SubLight<'a> {
         .transpose();
         let (low, high) = extents(view);
         let (low, high) = (low.as_dvec2(), high.as_dvec2());
-        let rim = round.then(|| Rim {
+        let rim = matches!(cut, Cut::Rim { .. }).then(|| Rim {
             center: DVec2::new(view.rim[0].into(), view.rim[1].into()),
             radius: view.rim[2].into(),
         });
-        let outline = Polygon::new(&[
+        let mut outline = Polygon::new(&[
             low,
             DVec2::new(high.x, low.y),
             high,
             DVec2::new(low.x, high.y),
         ]);
+        for edge in cut.edges() {
+            outline = outline.left_of(&Line {
+                through: edge.normal * edge.distance,
+                along: edge.normal.perp(),
+            });
+        }
         Self {
             map,
             near: fit.near.into(),
@@ -64,6 +74,7 @@ impl<'a> SubLight<'a> {
             center: DVec2::new(fit.center[0].into(), fit.center[1].into()),
             to_light: from_world * to_world,
             area: outline.area(rim),
+            extent: (low, high),
             outline,
             rim,
         }
@@ -123,7 +134,7 @@ impl<'a> SubLight<'a> {
     /// [half sizes²] Area of the part of the light that lies beyond the segment a→b, seen from the centre, within
     /// its angle. `side`: +1 where the centre lies left of it, −1 right.
     fn area_beyond(&self, [a, b]: [DVec2; 2], side: f64) -> f64 {
-        let (low, high) = (self.outline.corners[0], self.outline.corners[2]);
+        let (low, high) = self.extent;
         let (least, most) = (a.min(b), a.max(b));
         if least.cmpge(high).any() || most.cmple(low).any() {
             return 0.0;
@@ -155,17 +166,19 @@ struct Line {
     along: DVec2,
 }
 
-/// A convex polygon, counter-clockwise: a box, cut by up to four lines.
+/// A convex polygon, counter-clockwise: a box, cut by up to 16 edges and three lines.
 #[derive(Clone, Copy)]
 struct Polygon {
-    corners: [DVec2; 8],
+    corners: [DVec2; Self::MOST],
     count: usize,
 }
 
 impl Polygon {
+    const MOST: usize = 4 + Corners::MOST + 3;
+
     fn new(corners: &[DVec2]) -> Self {
         let mut polygon = Self {
-            corners: [DVec2::ZERO; 8],
+            corners: [DVec2::ZERO; Self::MOST],
             count: 0,
         };
         corners.iter().for_each(|&corner| polygon.push(corner));

@@ -38,6 +38,7 @@ fn standalone() -> Vec<Layout> {
         hs_scene_counts { r#type size next vertices triangles masked_triangles lights cameras lower upper }
         hs_camera { r#type size next eye target up vfov_deg width height }
         hs_light { r#type size next center u v normal radius color intensity shape reserved cone_deg }
+        hs_polygon { r#type size next corners corner_count }
         hs_knob { r#type size next name value }
         hs_settings { r#type size next technique packet_width packet_height leaf mapping split map mssm_bits footprint_pruning
             hierarchical gap_filling layers occluders light_samples pattern blocker_samples filter_samples

@@ -15,7 +15,7 @@ use ash::vk;
 use glam::{DMat4, DVec3};
 use halfshade::frame::{Casters, Surface};
 use halfshade::gpu::{Gpu, HostImageInfo};
-use halfshade::plan::HostFrame;
+use halfshade::plan::{HostFrame, plan_for_host};
 use halfshade::render::{
     DEFAULT_COSTS, DrawnView, Effect, FrameInput, GivenMap, Mesh, MeshInstance, Renderer,
     SlotImages,
@@ -316,6 +316,12 @@ fn effects_give_what_the_renderer_gives() {
         };
         let stage = Stage::new(&gpu, settings(2), |light| light.shape = round);
         check_meshes(host, &stage);
+        // A polygon's sides stay what they were planned for, wherever it goes.
+        let corners = [[-0.7, -0.5], [0.8, -0.4], [0.1, 0.7]].map(|[x, z]| DVec3::new(x, 0.0, z));
+        let (_, triangle) = LightShape::polygon(&corners).expect("a polygon");
+        let stage = Stage::new(&gpu, settings(2), |light| light.shape = triangle);
+        check_meshes(host, &stage);
+        refuses_other_outlines(&gpu, &stage);
         // Maps of the bottoms and of the receivers are drawn from meshes as well, and from nothing else.
         let scattered = Settings {
             technique: Technique::OccluderDriven,
@@ -345,6 +351,25 @@ fn effects_give_what_the_renderer_gives() {
         kinds::check_side_faces(host, &stage);
         rounded::check(host, &gpu);
     });
+}
+
+fn refuses_other_outlines(gpu: &Gpu, stage: &Stage) {
+    let frame = stage.frame(Casters::Gathered);
+    let mut plan = plan_for_host(&frame, &gpu.limits).expect("a plan");
+    let with = |corners: &[DVec3]| {
+        let (center, shape) = LightShape::polygon(corners).expect("a polygon");
+        AreaLight {
+            center,
+            shape,
+            ..frame.light.clone()
+        }
+    };
+    let corners = [[-0.7, -0.5], [0.8, -0.4], [0.1, 0.7]].map(|[x, z]| DVec3::new(x, z, 3.0));
+    assert!(plan.place(&with(&corners)).is_ok());
+    let wider = corners.map(|corner| corner * DVec3::new(2.0, 1.0, 1.0));
+    assert!(plan.place(&with(&wider)).is_err());
+    let square = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y + DVec3::Z];
+    assert!(plan.place(&with(&square)).is_err());
 }
 
 /// The matrix that a view's map was drawn with (`shadow_map.vert`).

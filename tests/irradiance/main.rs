@@ -4,6 +4,7 @@
 mod support;
 
 mod picture;
+mod polygon;
 mod truth;
 
 use std::cell::Cell;
@@ -29,6 +30,7 @@ fn light(turn: DQuat, half_size: [f64; 2], round: bool) -> Light {
         n: array(DVec3::Z),
         half_size: half_size.map(|half| half as f32),
         round: u32::from(round),
+        area: if round { PI as f32 } else { 4.0 },
         ..Light::default()
     }
 }
@@ -37,30 +39,33 @@ fn light(turn: DQuat, half_size: [f64; 2], round: bool) -> Light {
 #[derive(Debug)]
 struct Case {
     light: Light,
+    /// Of a polygon.
+    corners: Vec<[f32; 2]>,
     position: Vec3,
     normal: Vec3,
 }
 
 impl Case {
     fn scene(&self) -> Scene {
-        Scene::new(&self.light, self.position, self.normal)
+        Scene::new(&self.light, &self.corners, self.position, self.normal)
     }
 
     fn irradiance(&self) -> f64 {
-        f64::from(irradiance(&self.light, self.position, self.normal))
+        let (position, normal) = (self.position, self.normal);
+        f64::from(irradiance(&self.light, &self.corners, position, normal))
     }
 }
 
 /// A normal over whose horizon the light's highest point stands so high, tilted away from the light's centre towards
 /// `aside`.
-fn tilted(light: &Light, position: Vec3, aside: DVec3, highest: f64) -> Vec3 {
+fn tilted(light: &Light, corners: &[[f32; 2]], position: Vec3, aside: DVec3, highest: f64) -> Vec3 {
     let towards = -position.as_dvec3().normalize();
     let perpendicular = aside.reject_from_normalized(towards).normalize();
     let at = |angle: f64| (towards * angle.cos() + perpendicular * angle.sin()).as_vec3();
     let (mut above, mut below) = (0.0, PI);
     for _ in 0..50 {
         let angle = 0.5 * (above + below);
-        if Scene::new(light, position, at(angle)).highest_cosine() > highest {
+        if Scene::new(light, corners, position, at(angle)).highest_cosine() > highest {
             above = angle;
         } else {
             below = angle;
@@ -97,8 +102,8 @@ prop_compose! {
         let (sin, cos) = around.sin_cos();
         let sine = (1.0 - cosine * cosine).sqrt();
         let position = (turned * DVec3::new(sine * cos, sine * sin, cosine) * unit).as_vec3();
-        let normal = tilted(&light, position, aside, highest);
-        Case { light, position, normal }
+        let normal = tilted(&light, &[], position, aside, highest);
+        Case { light, corners: Vec::new(), position, normal }
     }
 }
 
@@ -148,7 +153,7 @@ fn receivers_beside_the_border() {
             * Vec2::from(case.light.half_size)
             * outward as f32;
         case.position = u * offset.x + v * offset.y + n * (offset.length() * slope as f32);
-        case.normal = tilted(&case.light, case.position, aside, 0.3);
+        case.normal = tilted(&case.light, &case.corners, case.position, aside, 0.3);
         case
     });
     let largest = largest_error(10000, beside);
@@ -162,7 +167,13 @@ fn the_limit_is_a_point() {
     let result = runner(500).run(&cases, |(mut case, size)| {
         let distance = case.position.length();
         case.light.half_size = [0.0; 2];
-        case.normal = tilted(&case.light, case.position, DVec3::new(0.3, 0.5, 0.8), 0.4);
+        case.normal = tilted(
+            &case.light,
+            &case.corners,
+            case.position,
+            DVec3::new(0.3, 0.5, 0.8),
+            0.4,
+        );
         let point = case.irradiance();
         let to_light = -case.position.as_dvec3();
         let square = to_light.length_squared();
@@ -209,7 +220,7 @@ fn suns_and_spheres_shine_by_the_cosine() {
                 (sphere, distance.powi(-2)),
                 (sun, 1.0 / (1.0 + radius * radius)),
             ] {
-                let found = f64::from(irradiance(&light, case.position, normal.as_vec3()));
+                let found = f64::from(irradiance(&light, &[], case.position, normal.as_vec3()));
                 let wanted = facing * angle.cos();
                 prop_assert!(
                     (found - wanted).abs() <= BOUND * wanted,
@@ -228,11 +239,17 @@ fn a_point_without_direction_has_no_cosine_of_its_own() {
     let result = runner(200).run(&a_case(), |mut case| {
         case.light.half_size = [0.0; 2];
         case.light.spread = SPREAD_POINT;
-        case.normal = tilted(&case.light, case.position, DVec3::new(0.3, 0.5, 0.8), 0.4);
+        case.normal = tilted(
+            &case.light,
+            &case.corners,
+            case.position,
+            DVec3::new(0.3, 0.5, 0.8),
+            0.4,
+        );
         for position in [case.position, -case.position] {
             let to_light = -position.as_dvec3();
             let wanted = to_light.dot(case.normal.as_dvec3()).max(0.0) / to_light.length().powi(3);
-            let found = f64::from(irradiance(&case.light, position, case.normal));
+            let found = f64::from(irradiance(&case.light, &[], position, case.normal));
             prop_assert!(
                 (found - wanted).abs() <= 1e-6 * wanted,
                 "{found} for {wanted}"
@@ -282,7 +299,7 @@ fn no_case_is_too_extreme() {
             light.half_size = [width, if round { width } else { height }];
             let along = [DVec3::X, DVec3::Y, DVec3::Z, direction];
             let normal = along[axis as usize].as_vec3();
-            let found = irradiance(&light, Vec3::new(x, y, z), normal);
+            let found = irradiance(&light, &[], Vec3::new(x, y, z), normal);
             prop_assert!((0.0..f32::INFINITY).contains(&found), "{found}");
             let area = f64::from(light.half_size[0])
                 * f64::from(light.half_size[1])
@@ -300,7 +317,7 @@ fn no_case_is_too_extreme() {
 fn the_definition_has_the_closed_forms() {
     let at = |half: [f64; 2], round, normal: Vec3| {
         let light = light(DQuat::IDENTITY, half, round);
-        Scene::new(&light, Vec3::Z, normal)
+        Scene::new(&light, &[], Vec3::Z, normal)
     };
     for size in [1e-7, 1e-3, 0.5, 3.0, 100.0] {
         let size = f64::from(size as f32);

@@ -66,6 +66,7 @@ struct Picture {
     /// Position and normal where there is a surface.
     points: Vec<Option<(Vec3, Vec3)>>,
     light: Light,
+    corners: Vec<[f32; 2]>,
 }
 
 fn picture_of(gpu: &Arc<Gpu>, shot: &Shot) -> Picture {
@@ -88,6 +89,7 @@ fn picture_of(gpu: &Arc<Gpu>, shot: &Shot) -> Picture {
         red: unshadowed.into_iter().step_by(4).collect(),
         points: points.map(point).collect(),
         light: renderer.plan().lights[0].light,
+        corners: renderer.plan().corners(),
     }
 }
 
@@ -113,7 +115,12 @@ fn difference_from_twin(picture: &Picture) -> (f64, [f64; 2]) {
             continue;
         };
         let intensity = f64::from(picture.light.intensity[0]);
-        let unshadowed = f64::from(irradiance(&picture.light, position, normal)) * intensity
+        let unshadowed = f64::from(irradiance(
+            &picture.light,
+            &picture.corners,
+            position,
+            normal,
+        )) * intensity
             / std::f64::consts::PI;
         let wanted = encoded(ambient + unshadowed);
         largest = largest.max((f64::from(picture.red[index]) - wanted).abs());
@@ -136,6 +143,32 @@ fn the_pass_is_its_twin() {
                 assert!(levels < 1.0, "round {round}, size {size}: {levels}");
                 assert!(range[1] > 0.5 && range[0] < 0.5 * range[1], "{range:?}");
             }
+        }
+    });
+}
+
+/// Small ones and wide ones, whose sides the stage's planes cut.
+#[test]
+fn the_pass_is_its_twin_under_polygons() {
+    with_gpu(|gpu| {
+        for size in [1e-6, 1e-3, 0.1, 0.3, 3.0, 50.0] {
+            let LightShape::Rect { u, v } = above([size, 0.6 * size], false).shape else {
+                panic!("a rectangle")
+            };
+            let corners = [
+                [-1.0, -0.8],
+                [0.3, -1.0],
+                [1.0, -0.2],
+                [0.9, 0.5],
+                [-0.4, 1.0],
+            ];
+            let corners = corners.map(|[x, y]| DVec3::Y * DISTANCE + x * u + y * v);
+            let (center, shape) = LightShape::polygon(&corners).expect("a polygon");
+            let picture = picture_of(gpu, &shot_of(stage(), light(center, shape)));
+            let (levels, range) = difference_from_twin(&picture);
+            println!("size {size}: {levels:.2} levels, radiance {range:?}");
+            assert!(levels < 1.0, "size {size}: {levels}");
+            assert!(range[1] > 0.5 && range[0] < 0.5 * range[1], "{range:?}");
         }
     });
 }

@@ -1,6 +1,6 @@
 //! Irradiance in f64, from its definition: an adaptive quadrature over the visible part of the light's area.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use halfshade::shared::Light;
 
 /// Positive nodes and weights of Gauss and Legendre's rule of five.
@@ -57,10 +57,12 @@ pub struct Scene {
     axes: [DVec3; 3],
     half: DVec2,
     disc: bool,
+    /// [half sizes] Of a polygon, counter-clockwise.
+    corners: Vec<DVec2>,
 }
 
 impl Scene {
-    pub fn new(light: &Light, position: Vec3, normal: Vec3) -> Self {
+    pub fn new(light: &Light, corners: &[[f32; 2]], position: Vec3, normal: Vec3) -> Self {
         let of = |vector: [f32; 3]| Vec3::from(vector).as_dvec3();
         let n = of(light.n).normalize();
         let u = of(light.u).reject_from_normalized(n).normalize();
@@ -70,22 +72,59 @@ impl Scene {
             axes: [u, n.cross(u), n],
             half: DVec2::from(light.half_size.map(f64::from)),
             disc: light.round != 0,
+            corners: (corners.iter())
+                .map(|&corner| Vec2::from(corner).as_dvec2())
+                .collect(),
         }
     }
 
     pub fn area(&self) -> f64 {
-        let shape = if self.disc { std::f64::consts::PI } else { 4.0 };
-        shape * self.half.x * self.half.y
+        self.outline_area() * self.half.x * self.half.y
+    }
+
+    /// [half sizes²]
+    fn outline_area(&self) -> f64 {
+        match (self.disc, self.corners.is_empty()) {
+            (true, _) => std::f64::consts::PI,
+            (_, true) => 4.0,
+            _ => 0.5 * self.sides().map(|(p, q)| p.perp_dot(q)).sum::<f64>(),
+        }
+    }
+
+    fn sides(&self) -> impl Iterator<Item = (DVec2, DVec2)> {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().copied().zip(next.copied())
+    }
+
+    /// [half sizes] The light's ends on the line x = s.
+    fn ends(&self, s: f64) -> (f64, f64) {
+        if self.disc {
+            let chord = (1.0 - s * s).max(0.0).sqrt();
+            return (-chord, chord);
+        }
+        if self.corners.is_empty() {
+            return (-1.0, 1.0);
+        }
+        let mut ends = (f64::INFINITY, f64::NEG_INFINITY);
+        for (from, to) in self.sides() {
+            if (from.x <= s) != (to.x <= s) {
+                let at = from.y + (to.y - from.y) * ((s - from.x) / (to.x - from.x));
+                ends = (ends.0.min(at), ends.1.max(at));
+            }
+        }
+        ends
     }
 
     /// The height of the light's highest point over the sum of distance and half sizes.
     pub fn highest_cosine(&self) -> f64 {
-        let along = DVec2::new(self.normal.dot(self.axes[0]), self.normal.dot(self.axes[1])).abs()
-            * self.half;
-        let reach = if self.disc {
-            along.length()
-        } else {
-            along.x + along.y
+        let along =
+            DVec2::new(self.normal.dot(self.axes[0]), self.normal.dot(self.axes[1])) * self.half;
+        let reach = match (self.disc, self.corners.is_empty()) {
+            (true, _) => along.length(),
+            (_, true) => along.x.abs() + along.y.abs(),
+            _ => (self.corners.iter()).fold(f64::NEG_INFINITY, |reach, corner| {
+                reach.max(corner.dot(along))
+            }),
         };
         (self.normal.dot(self.way) + reach) / (self.way.length() + self.half.x + self.half.y)
     }
@@ -101,17 +140,13 @@ impl Scene {
         let height = self.normal.dot(self.way);
         let rise = DVec2::new(self.normal.dot(u), self.normal.dot(v)) * self.half;
         let along_v = |s: f64| {
-            let border = if self.disc {
-                (1.0 - s * s).max(0.0).sqrt()
-            } else {
-                1.0
-            };
+            let (first, last) = self.ends(s);
             let horizon = -(height + rise.x * s) / rise.y;
             let (low, high) = match rise.y {
                 0.0 if height + rise.x * s <= 0.0 => return 0.0,
-                0.0 => (-border, border),
-                rise if rise > 0.0 => (horizon.max(-border), border),
-                _ => (-border, horizon.min(border)),
+                0.0 => (first, last),
+                rise if rise > 0.0 => (horizon.max(first), last),
+                _ => (first, horizon.min(last)),
             };
             let at = |t: f64| {
                 let to_light = self.way + u * (s * self.half.x) + v * (t * self.half.y);
@@ -133,8 +168,17 @@ impl Scene {
             };
             breaks.extend(crossings);
         }
-        let shape = if self.disc { std::f64::consts::PI } else { 4.0 };
-        integral(along_v, [-1.0, 1.0], &breaks) / shape
+        breaks.extend(self.corners.iter().map(|corner| corner.x));
+        breaks.extend(self.sides().map(|(from, to)| {
+            let (before, after) = (height + rise.dot(from), height + rise.dot(to));
+            from.x + (to.x - from.x) * (before / (before - after))
+        }));
+        breaks.extend(self.sides().map(|(from, to)| {
+            // Where a side passes the foot.
+            let along = (foot - from).dot(to - from) / (to - from).length_squared();
+            from.x + (to.x - from.x) * along
+        }));
+        integral(along_v, [-1.0, 1.0], &breaks) / self.outline_area()
     }
 
     /// [half sizes] Where the horizon meets the rim.

@@ -3,13 +3,14 @@
 use std::sync::atomic::AtomicBool;
 
 use halfshade::plan::{Outputs, plan};
+use halfshade::scene::Outline;
 use halfshade::study::stability::{cases, csv, examine, summary, truth};
 use halfshade::technique::{Settings, Technique};
 
 use super::support::with_gpu;
 
 /// The cases that are tried here: one for each way in which numbers get large, small or equal.
-const CASES: [&str; 19] = [
+const CASES: [&str; 20] = [
     "plate 1e-7 of the light's height above the ground",
     "plate 1e-7 of the light's height below the light",
     "slats 0.01 below the light, turned by 0",
@@ -21,6 +22,7 @@ const CASES: [&str; 19] = [
     "light without area",
     "light of half width 5e1",
     "aspect 1:10000",
+    "triangle of 1:10000, tilted by 80",
     "sphere that touches the ground",
     "sphere around everything",
     "sun of 0.000001 degrees",
@@ -32,8 +34,12 @@ const CASES: [&str; 19] = [
 ];
 /// [visibility] Mean error: what a map of 128 texels knows of edges, or what points know of slats before the light.
 const MEAN: f64 = 0.02;
-/// [visibility] Sums of some hundred areas in f32; no case of `halfshade study stability` is off by more than 6e-6.
+/// [visibility] Sums of some hundred areas in f32; no case of `halfshade study stability` but polygons in a single view is off by more than
+/// 6e-6.
 const TWIN: f64 = 1e-5;
+/// [visibility] In a sharp corner the swept area bends between two entries of the sector table, 1/128 apart: 3 · (1/128)² / 4 where
+/// its slope changes by 3, as in the triangles here.
+const TWIN_OF_CORNERS: f64 = 5e-5;
 
 #[test]
 fn extreme_cases_stay_finite_and_in_range() {
@@ -58,7 +64,11 @@ fn extreme_cases_stay_finite_and_in_range() {
                 let planned = plan(&case.with(&settings), outputs, &gpu.limits);
                 let integrated = planned.expect(name).near_count() == 0;
                 assert_eq!(finding.twin.is_some(), ours && integrated, "{finding:?}");
-                assert!(finding.twin.is_none_or(|twin| twin < TWIN), "{finding:?}");
+                let bound = match case.shot.lights[0].outline() {
+                    Outline::Polygon(_) => TWIN_OF_CORNERS,
+                    _ => TWIN,
+                };
+                assert!(finding.twin.is_none_or(|twin| twin < bound), "{finding:?}");
                 findings.push(finding);
             }
         }

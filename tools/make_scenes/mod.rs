@@ -12,11 +12,12 @@
 //! | `grid` | a sparse accessor, matrix nodes |
 //! | `staircase` | u32 indices, a triangle fan, scaled nodes |
 //!
-//! Each file also brings its shot's camera and, as EXT_lights_area, its light.
+//! Each file also brings its shot's camera and, as EXT_lights_area, its light. The shot `hexagon` shows the knot under a polygon.
 
 mod colonnade;
 mod document;
 mod grid;
+mod hexagon;
 mod knot;
 mod plate;
 mod shot;
@@ -47,6 +48,8 @@ pub fn files() -> Vec<File> {
             bytes: document.into_glb(),
         });
     }
+    let (name, shot) = hexagon::shot();
+    files.push(text(name, shot));
     let (shot, document) = plate::scene();
     let (json, bin) = document.into_gltf("plate.bin");
     files.push(text("plate.json".into(), shot.to_json("plate.gltf")));

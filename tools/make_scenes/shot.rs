@@ -29,22 +29,14 @@ pub struct Shot {
     pub light: Light,
 }
 
-impl Shot {
-    /// [pixel] Width and height of every shot.
-    const SIZE: u32 = 256;
-
-    /// The shot file, for the scene file of this name beside it.
-    pub fn to_json(&self, scene: &str) -> String {
-        let camera = json!({
-            "eye": self.eye.to_array(), "target": self.target.to_array(), "up": [0, 1, 0],
-            "vfov_deg": self.vfov_deg, "width": Self::SIZE, "height": Self::SIZE,
-        });
-        let light = match self.light {
-            Light::Rect { center, u, v } => json!({
+impl Light {
+    fn to_json(&self) -> serde_json::Value {
+        match *self {
+            Self::Rect { center, u, v } => json!({
                 "type": "rect",
                 "center": center.to_array(), "u": u.to_array(), "v": v.to_array(),
             }),
-            Light::Disc {
+            Self::Disc {
                 center,
                 normal,
                 radius,
@@ -52,7 +44,25 @@ impl Shot {
                 "type": "disc",
                 "center": center.to_array(), "normal": normal.to_array(), "radius": radius,
             }),
-        };
+        }
+    }
+}
+
+impl Shot {
+    /// [pixel] Width and height of every shot.
+    const SIZE: u32 = 256;
+
+    /// The shot file, for the scene file of this name beside it.
+    pub fn to_json(&self, scene: &str) -> String {
+        self.under(&self.light.to_json(), scene)
+    }
+
+    /// The shot file with another light.
+    pub fn under(&self, light: &serde_json::Value, scene: &str) -> String {
+        let camera = json!({
+            "eye": self.eye.to_array(), "target": self.target.to_array(), "up": [0, 1, 0],
+            "vfov_deg": self.vfov_deg, "width": Self::SIZE, "height": Self::SIZE,
+        });
         format!(
             "{{\n  \"name\": {},\n  \"what\": {},\n  \"scene\": {},\n  \"camera\": {camera},\n  \"lights\": [\n    {light}\n  ]\n}}\n",
             json!(self.name),

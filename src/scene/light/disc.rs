@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-use super::{Form, Spread, is_sane, radius_fault, some_frame};
+use super::{Form, Outline, Spread, is_sane, radius_fault, some_frame};
 
 pub fn form(normal: DVec3, radius: f64) -> Form {
     let direction = normal.try_normalize();
     Form {
         frame: some_frame(direction.unwrap_or(DVec3::NEG_Y)),
         half_size: (radius, radius),
-        round: true,
+        outline: Outline::Disc,
         spread: match direction {
             None if radius == 0.0 => Spread::Point,
             _ => Spread::Plane,

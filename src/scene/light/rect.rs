@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Form, Spread, is_sane, some_frame};
+use super::{Form, Outline, Spread, is_sane, some_frame};
 
 /// The largest |cos| between the half-axes.
 const PERPENDICULAR_TOLERANCE: f64 = 1e-4;
@@ -15,7 +15,7 @@ pub fn form(u: DVec3, v: DVec3) -> Form {
     Form {
         frame,
         half_size: (u.length(), v.length()),
-        round: false,
+        outline: Outline::Square,
         spread: match (u, v) {
             (DVec3::ZERO, DVec3::ZERO) => Spread::Point,
             _ => Spread::Plane,

@@ -3,14 +3,14 @@
 
 use glam::DVec3;
 
-use super::{Form, Spread, radius_fault, some_frame};
+use super::{Form, Outline, Spread, radius_fault, some_frame};
 use crate::shared::{CONE_COUNT, CONE_SPLIT};
 
 pub fn form(radius: f64) -> Form {
     Form {
         frame: some_frame(DVec3::NEG_Y),
         half_size: (radius, radius),
-        round: true,
+        outline: Outline::Disc,
         spread: match radius {
             0.0 => Spread::Point,
             _ => Spread::Sphere,

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::{Form, Spread, is_sane, some_frame};
+use super::{Form, Outline, Spread, is_sane, some_frame};
 
 /// [degree] The sun's angular diameter, seen from the earth.
 pub const ANGLE_DEG: f64 = 0.533;
@@ -20,7 +20,7 @@ pub fn form(direction: DVec3, angle_deg: f64) -> Form {
     Form {
         frame: some_frame(direction.try_normalize().unwrap_or(DVec3::NEG_Y)),
         half_size: (tangent, tangent),
-        round: true,
+        outline: Outline::Disc,
         spread: Spread::Sun,
     }
 }

@@ -152,6 +152,19 @@ fn lights() -> Vec<Case> {
             format!("aspect 1:{}", 10i32.pow(power as u32)),
         ));
     }
+    for (power, tilt) in [(0, 0.0), (2, 0.0), (4, 0.0), (4, 80.0)] {
+        let stage = Stage {
+            light_half: (0.5, 0.5 * 10f64.powi(-power)),
+            light_tilt: tilt,
+            light_shape: Kind::Triangle,
+            ..Stage::default()
+        };
+        let name = format!(
+            "triangle of 1:{}, tilted by {tilt}",
+            10i32.pow(power as u32)
+        );
+        all.push(stage.case("light's shape", name));
+    }
     let point = Stage {
         light_half: (0.0, 0.0),
         ..Stage::default()

@@ -53,8 +53,12 @@ impl Case {
 pub(super) enum Kind {
     Rect,
     Disc,
+    /// The half of the rectangle on one side of its diagonal.
+    Triangle,
     Sphere,
-    Sun { angle_deg: f64 },
+    Sun {
+        angle_deg: f64,
+    },
 }
 
 /// A plate between the ground and a square light, and what a case changes about it. Lengths in [scene units] before `scale`.
@@ -135,10 +139,10 @@ impl Stage {
         for point in parts.iter_mut().flat_map(|(shape, _)| &mut shape.positions) {
             *point = place(*point);
         }
-        let shape = self.light();
+        let (center, shape) = self.light(place(DVec3::Y * self.light_height));
         let light = AreaLight {
             name: String::new(),
-            center: place(DVec3::Y * self.light_height),
+            center,
             shape,
             color: Vec3::ONE,
             intensity: None,
@@ -172,13 +176,20 @@ impl Stage {
         }
     }
 
-    fn light(&self) -> LightShape {
+    /// Where it is and what, around a place.
+    fn light(&self, place: DVec3) -> (DVec3, LightShape) {
         let tilted = |axis: DVec3| rotated(axis, DVec3::Z, self.light_tilt);
         let (half_u, half_v) = (
             self.light_half.0 * self.scale,
             self.light_half.1 * self.scale,
         );
-        match self.light_shape {
+        let shape = match self.light_shape {
+            Kind::Triangle => {
+                let (u, v) = (tilted(DVec3::X) * half_u, tilted(DVec3::Z) * half_v);
+                let corners = [-u - v, u - v, v - u].map(|corner| place + corner);
+                return LightShape::polygon(&corners)
+                    .unwrap_or((place, LightShape::Sphere { radius: 0.0 }));
+            }
             Kind::Rect => LightShape::Rect {
                 u: tilted(DVec3::X) * half_u,
                 v: tilted(DVec3::Z) * half_v,
@@ -192,7 +203,8 @@ impl Stage {
                 direction: tilted(DVec3::NEG_Y),
                 angle_deg,
             },
-        }
+        };
+        (place, shape)
     }
 }
 

@@ -32,6 +32,7 @@ pub fn largest_deviation(
     ) && renderer.plan().near_count() == 0;
     let pixels = image.data.len();
     let light = renderer.plan().lights[0].light;
+    let corners = renderer.plan().corners();
     let texels = u64::from(shot.settings.map).pow(2);
     if !integrates || texels * pixels as u64 * u64::from(light.view_count) > WORK_MAX {
         return Ok(None);
@@ -48,7 +49,7 @@ pub fn largest_deviation(
     }
     let deviation = |pixel: usize| {
         let (position, normal) = place(pixel);
-        let wanted = resolve::visibility(&light, position, normal, hidden[pixel]);
+        let wanted = resolve::visibility(&light, &corners, position, normal, hidden[pixel]);
         (f64::from(image.data[pixel]) - wanted).abs()
     };
     let surfaces = (0..pixels).filter(|&pixel| positions[pixel][3] > 0.0);
@@ -78,7 +79,7 @@ fn add_hidden(
         size,
         depths: &depths,
     };
-    let part = SubLight::new(&view, &fit, planned.is_round(), map);
+    let part = SubLight::new(&view, &fit, planned.cut(), map);
     hidden
         .par_iter_mut()
         .enumerate()

@@ -114,6 +114,30 @@ static void of_scenes(hs_context *context) {
     CHECK(hs_scene_load(context, "", &scene) == HS_IO && scene == NULL);
 }
 
+static void of_polygons(hs_shot *shot, hs_light light) {
+    double corners[] = {0, 2, 0, 1, 2, 0, 1, 2, 1, 0, 2, 1};
+    HEAD(hs_polygon, polygon, HS_TYPE_POLYGON);
+    polygon.corners = corners;
+    polygon.corner_count = 4;
+    light.shape = HS_LIGHT_POLYGON;
+    REFUSED(hs_shot_set_lights(shot, &light, 1));
+    light.next = &polygon;
+    OK(hs_shot_set_lights(shot, &light, 1));
+    polygon.next = &polygon; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    polygon.next = NULL;
+    polygon.size -= 8; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    polygon.size += 8;
+    polygon.corner_count = 2; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    polygon.corner_count = UINT64_MAX; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    polygon.corner_count = 4;
+    polygon.corners = NULL; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    polygon.corners = corners;
+    corners[1] = 7; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    corners[1] = NAN; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    corners[1] = 2;
+    light.shape = HS_LIGHT_DISC; REFUSED(hs_shot_set_lights(shot, &light, 1));
+}
+
 static void of_shots(hs_context *context) {
     hs_scene *scene = make_scene(context);
     hs_shot *shot = NULL;
@@ -152,7 +176,8 @@ static void of_shots(hs_context *context) {
     light.radius = 1;
     light.center[1] = 2;
     WRONG_STRUCTURES(light, hs_shot_set_lights(shot, &light, 1));
-    light.shape = 4; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    light.shape = 5; REFUSED(hs_shot_set_lights(shot, &light, 1));
+    of_polygons(shot, light);
     light.shape = HS_LIGHT_DISC;
     light.radius = -1; REFUSED(hs_shot_set_lights(shot, &light, 1));
     light.radius = 1;
