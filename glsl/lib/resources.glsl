@@ -64,6 +64,7 @@
 
 // From kernels to visibility.
 #define RESOURCE_tile_bounds ARRAY(61, TileBounds, tile_bounds)
+#define RESOURCE_grids ARRAY(81, uint, grids)
 #define RESOURCE_tiles ARRAY(62, Tile, tiles)
 #define RESOURCE_kernels ARRAY(30, Kernel, kernels)
 #define RESOURCE_windows ARRAY(63, Window, windows)
@@ -79,6 +80,7 @@
 #define RESOURCE_partial ARRAY(37, SUM, partial)
 #define RESOURCE_sectors ARRAY(38, float, sectors)
 #define RESOURCE_occlusion ARRAY(39, float, occlusion)
+#define RESOURCE_view_occlusion ARRAY(80, float, view_occlusion)
 #define RESOURCE_visibility ARRAY(40, float, visibility)
 
 // The picture.

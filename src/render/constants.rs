@@ -44,6 +44,7 @@ pub fn of_view(light: &LightPlan, set: &ViewSet, view: &ViewPlan) -> Constants {
         ("ACCUMULATE", light.accumulates().into()),
         ("LAYERS", set.recipe.layers.max(1)),
         ("COARSE_LEVELS", set.recipe.coarse_levels),
+        ("EVALUATE", set.recipe.grids),
     ]);
     constants
 }
