@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // A kernel for each pixel of the tiles that a view has to look at, shrunk by repeated queries of the hierarchy, and the pixels that
 // need no integration [SS07; Yang09 alg. 1, step 5]: lit where no sample of the kernel occludes, umbra where all do. A kernel holds
-// every cell that adds to the pixel's integral.
+// every cell that adds to the pixel's integral. Where not all pixels are evaluated, some of those that are left are joined from others
+// (join.comp).
 #include "pass.glsl"
 #include "side_by_side.glsl"
 #include "receiver.glsl"
@@ -21,11 +22,13 @@ readonly BUFFER(fits);
 readonly BUFFER(tiles);
 writeonly BUFFER(kernels);
 writeonly BUFFER(quality);
+readonly BUFFER(grids);
 BUFFER(counters);
 #include "shadow_map.glsl"
 #include "surface.glsl"
 #include "part_of_view.glsl"
 #include "occlusion.glsl"
+#include "grid.glsl"
 #include "window.glsl"
 #include "rounds.glsl"
 
@@ -33,10 +36,14 @@ writeonly BUFFER(windows);
 BUFFER(lists);
 
 shared uint penumbra[2];
+shared Kernel kernels_of_tile[TILE_SIZE * TILE_SIZE];
 
 // [cell] Kernels no wider and no higher are looked at sample by sample. A tilted surface without occluders has such a
 // kernel of its own, for bounds do not tell it from an occluder: uphill it comes nearer to the light.
 const int SAMPLED_SIDE = 2;
+
+// Kernels are alike whose borders are apart by no more than one in so many of their cells.
+const int ALIKE = 2;
 
 // Whether a kernel is so small, and no sample in it occludes.
 bool nothing_occludes(Receiver receiver, Cells cells) {
@@ -136,6 +143,37 @@ void list_window(uvec2 place_of_tile, bool is_penumbra) {
     }
 }
 
+// Whether a pixel's kernel holds much the same as a neighbour's, so that little else hides the light from the one than from the other.
+bool is_alike(Kernel kernel, Kernel other) {
+    ivec2 first = unpacked(kernel.first);
+    ivec2 last = unpacked(kernel.last);
+    ivec2 moved = max(abs(unpacked(other.first) - first), abs(unpacked(other.last) - last));
+    return all(lessThanEqual(ALIKE * moved, last - first + 1));
+}
+
+// Whether all neighbours of this invocation's pixel on a grid are penumbra, over kernels like its own.
+bool is_amid_penumbra(Kernel kernel, uint grid) {
+    bool amid = true;
+    for (uint i = 0u; i < 4u; ++i) {
+        uvec2 place = grid_neighbour(grid, gl_LocalInvocationID.xy, i);
+        Kernel other = kernels_of_tile[place.y * TILE_SIZE + place.x];
+        amid = amid && other.status == KERNEL_PENUMBRA && is_alike(kernel, other);
+    }
+    return amid;
+}
+
+// Leaves a pixel that would be integrated to its neighbours, on the sparsest of some grids on which they allow it. What is lit or
+// umbra stays so, and nothing is joined across it.
+void leave_to_neighbours(inout Kernel kernel, uint grids_of_pixel) {
+    kernels_of_tile[gl_LocalInvocationIndex] = kernel;
+    barrier();
+    if (kernel.status != KERNEL_PENUMBRA) return;
+    for (uint grid = EVALUATE; grid > 0u && kernel.status == KERNEL_PENUMBRA; --grid) {
+        bool known = (grids_of_pixel >> grid & 1u) != 0u;
+        if (known && is_amid_penumbra(kernel, grid)) kernel = Kernel(KERNEL_JOINED, grid, 0u, 0.0, 0.0);
+    }
+}
+
 void main() {
     uint at = gl_WorkGroupID.y * GROUPS_PER_ROW + gl_WorkGroupID.x;
     if (at >= lists[view_index()].tile_count) return;
@@ -143,9 +181,11 @@ void main() {
     uvec2 pixel = tile.place * TILE_SIZE + gl_LocalInvocationID.xy;
     View view = views[view_index()];
     Kernel kernel = Kernel(KERNEL_NONE, 0u, 0u, 0.0, 0.0);
-    if (all(lessThan(pixel, frame.size))) {
+    bool exists = all(lessThan(pixel, frame.size));
+    if (exists) kernel = kernel_at(view, tile, pixel);
+    if (EVALUATE > 0u && tile.status == KERNEL_PENUMBRA) leave_to_neighbours(kernel, exists ? grids[index_of(pixel)] : 0u);
+    if (exists) {
         uint index = index_of(pixel);
-        kernel = kernel_at(view, tile, pixel);
         kernels[first_pixel() + index] = kernel;
         if (kernel.status == KERNEL_UMBRA) add_occluded(index, view.weight);
         if (COUNT) count(kernel.status);

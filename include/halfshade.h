@@ -573,7 +573,7 @@ typedef struct hs_statistics {
     uint32_t views_with_receivers;
     // Views in which it found casters too.
     uint32_t views_with_casters;
-    // Pixels of penumbra, lit and umbra together.
+    // Pixels that were looked at: lit, in the umbra, integrated, or joined from others.
     uint64_t pixels;
     // Pixels fully lit.
     uint64_t lit;

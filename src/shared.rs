@@ -91,6 +91,13 @@ shared_constants! {
     /// Kernel of a pixel that this view has nothing to say about: no surface there, another face's
     /// receiver, or one that faces away.
     KERNEL_NONE: uint = 3;
+    /// Kernel of a pixel whose visibility in this view is joined from that of pixels around it, on the grid that `first` tells.
+    KERNEL_JOINED: uint = 4;
+    /// Rows of a tile that the grids have on which pixels are evaluated, and columns, `TILE_SIZE` bits for a grid: all, half and a quarter.
+    /// The first and the last are among them, so that nothing is joined across tiles; a grid has all rows of the sparser ones.
+    GRID_ROWS: uint = 0x0081_a5ff;
+    /// [grid] The sparsest.
+    GRID_MAX: uint = 2;
     /// A light shines from its plane to one side.
     SPREAD_PLANE: uint = 0;
     /// From a point to all sides alike.

@@ -27,14 +27,14 @@ mod pixel_contour;
 mod reference_maps;
 mod shadow_width;
 
-use crate::frame::kernel::{CLASSIFY, KERNELS, SMOOTH_QUALITY, TILES, blended};
+use crate::frame::kernel::{CLASSIFY, JOIN, KERNELS, SMOOTH_QUALITY, TILES, blended};
 use crate::frame::{Domain, Pass, Resource, Work};
 use crate::scene::AreaLight;
 use crate::shared::FRONT_REACH;
 use crate::sub_light::{self, Part};
 
 pub use choice::Choice;
-pub use kinds::{Accumulate, Hierarchy, Leaf, Mapping, Neighbours, Occluders, Pattern};
+pub use kinds::{Accumulate, Evaluate, Hierarchy, Leaf, Mapping, Neighbours, Occluders, Pattern};
 pub use reference_maps::POINT_REACH;
 pub use row::{Row, SweepFlag};
 pub use settings::{KNOBS, Knob, Settings};
@@ -164,6 +164,8 @@ pub struct Recipe {
     pub coarse_levels: u32,
     /// These levels are of microrects.
     pub microrects: bool,
+    /// [grid] On which pixels are joined from others, beside that of all pixels; 0 = all are evaluated.
+    pub grids: u32,
     /// [word] What a pixel keeps from one round to the next, where a driver bounds loops.
     pub words: u32,
     /// [turn] Of loops for each cell of the map, at most, where a driver bounds them.
@@ -183,7 +185,20 @@ impl Recipe {
 
     /// `settings`: as they run for the light ([`Settings::of_light`]).
     pub fn new(settings: &Settings) -> Self {
-        settings.technique.method().recipe(settings)
+        let mut recipe = settings.technique.method().recipe(settings);
+        if recipe.can_join() {
+            recipe.grids = settings.evaluate.grids();
+        }
+        let sparsest_first = (1..=recipe.grids).rev();
+        recipe
+            .passes
+            .extend(sparsest_first.map(|grid| (JOIN, grid)));
+        recipe
+    }
+
+    /// Whether pixels can be joined from others: levels of quality are smoothed over all that are penumbra.
+    fn can_join(&self) -> bool {
+        self.kernels && self.coarse_levels == 0
     }
 
     /// A kernel for each penumbra pixel, and a pass over the list of them.

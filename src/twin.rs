@@ -10,6 +10,7 @@ pub mod contour;
 pub mod facing;
 pub mod hierarchy;
 pub mod irradiance;
+pub mod join;
 pub mod kernels;
 pub mod microrect;
 pub mod outline;

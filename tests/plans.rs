@@ -8,7 +8,7 @@ use halfshade::gpu::Limits;
 use halfshade::plan::{Outputs, plan, suited_exposure};
 use halfshade::scene::{AreaLight, Camera, LightShape, Material, Scene};
 use halfshade::shot::{Overrides, Shot};
-use halfshade::technique::{Settings, Technique};
+use halfshade::technique::{Evaluate, Settings, Technique};
 
 /// Of no device, so that the plans depend on none.
 const LIMITS: Limits = Limits {
@@ -259,6 +259,21 @@ fn a_budget_plans_coarser_levels_and_two_of_each_visibility() {
         settings.budget_falloff = 0.5;
     });
     check("plate-budget", &limited, EVERYTHING, false);
+}
+
+#[test]
+fn pixels_that_are_not_evaluated_are_joined_after_each_view() {
+    let quarter = with(scene("plate"), |settings| {
+        settings.split = 1;
+        settings.evaluate = Evaluate::Quarter;
+    });
+    check("plate-quarter", &quarter, EVERYTHING, false);
+    let budgeted = with(quarter, |settings| settings.budget = Some(12));
+    let all = with(budgeted.clone(), |settings| {
+        settings.evaluate = Evaluate::Full;
+    });
+    let text = |shot: &Shot| plan(shot, EVERYTHING, &LIMITS).expect("a plan").to_string();
+    assert_eq!(text(&budgeted), text(&all));
 }
 
 #[test]

@@ -16,4 +16,5 @@ layout(constant_id = 12) const uint ROUNDS = 1u;          // [dispatch] in which
 layout(constant_id = 13) const uint LAYERS = 1u;          // peeled layers of the shadow map
 layout(constant_id = 67) const uint VIEWS_AT_ONCE = 1u;   // [slot] for maps that are made side by side
 layout(constant_id = 49) const uint QUALITY = 0u;         // which of a pixel's two levels of quality is added: a QUALITY_…
+layout(constant_id = 80) const uint EVALUATE = 0u;        // [grid] the sparsest that pixels are joined on; 0: all are evaluated
 layout(constant_id = 16) const bool CONTOURS = false;     // occluders are contours, not micropatches

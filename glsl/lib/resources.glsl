@@ -66,6 +66,7 @@
 
 // From kernels to visibility.
 #define RESOURCE_tile_bounds ARRAY(61, TileBounds, tile_bounds)
+#define RESOURCE_grids ARRAY(81, uint, grids)
 #define RESOURCE_tiles ARRAY(62, Tile, tiles)
 #define RESOURCE_kernels ARRAY(30, Kernel, kernels)
 #define RESOURCE_windows ARRAY(63, Window, windows)

@@ -147,7 +147,7 @@ pub struct hs_statistics {
     pub views_with_receivers: u32,
     /// Views in which it found casters too.
     pub views_with_casters: u32,
-    /// Pixels of penumbra, lit and umbra together.
+    /// Pixels that were looked at: lit, in the umbra, integrated, or joined from others.
     pub pixels: u64,
     /// Pixels fully lit.
     pub lit: u64,

@@ -46,14 +46,25 @@ pub const fn blended(pass: Pass) -> [Pass; 2] {
 /// Packets and pixels to their lists [Yang09 §4.3].
 pub const CLASSIFY: Pass = Pass::dispatch("classify", "classify.comp", Domain::Packets);
 
+/// The grids on which pixels have neighbours of the same surface.
+const GRIDS: Pass = Pass::dispatch("grids", "grids.comp", Domain::Image);
+
+/// What the view hides of pixels that are not integrated, from their neighbours.
+pub const JOIN: Pass = Pass::dispatch("join", "join.comp", Domain::ListedTiles);
+
 /// Once a frame, before the first view.
-pub fn first_passes(has_lists: bool, budgets_vary: bool) -> impl Iterator<Item = Pass> {
+pub fn first_passes(
+    has_lists: bool,
+    budgets_vary: bool,
+    joins: bool,
+) -> impl Iterator<Item = Pass> {
     let first: &[Pass] = match has_lists {
         true => &[CLEAR_LISTS, TILE_BOUNDS],
         false => &[],
     };
     let budgets = budgets_vary.then_some(BUDGETS);
-    first.iter().copied().chain(budgets)
+    let grids = joins.then_some(GRIDS);
+    first.iter().copied().chain(budgets).chain(grids)
 }
 
 /// What views side by side have found.
@@ -78,6 +89,7 @@ pub const RESOURCES: &[Resource] = &[
             .times(s.looked_at_once)
             .when(s.windows)
     }),
+    Resource::new("grids", |s| Shape::array::<u32>(s.pixels()).when(s.joins)),
     Resource::new("packets", |s| {
         Shape::array::<Packet>(s.packets()).when(s.packet_lists)
     }),
@@ -125,7 +137,7 @@ pub const LIST_RESOURCES: &[Resource] = &[
     Resource::new("occluded_by_view", |s| {
         Shape::array::<f32>(s.pixels())
             .times(s.looked_at_once)
-            .when(s.looked_at_once > 1)
+            .when(s.looked_at_once > 1 || s.joins)
     }),
 ];
 

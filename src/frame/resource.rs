@@ -78,6 +78,8 @@ pub struct Sizes {
     pub kernels: bool,
     /// Local packets form in windows.
     pub windows: bool,
+    /// Some pixels are joined from others.
+    pub joins: bool,
     pub packet_lists: bool,
     pub pixel_lists: bool,
     /// [pixel] Width and height of a packet.

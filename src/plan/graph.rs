@@ -18,7 +18,11 @@ impl Plan {
             graph.add(Scope::Frame, map::first_passes());
             graph.add(
                 Scope::Frame,
-                kernel::first_passes(self.needs(Recipe::has_lists), self.budgets_vary()),
+                kernel::first_passes(
+                    self.needs(Recipe::has_lists),
+                    self.budgets_vary(),
+                    self.needs(|recipe| recipe.grids > 0),
+                ),
             );
         }
         for (index, light) in self.lights.iter().enumerate() {

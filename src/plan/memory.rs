@@ -112,6 +112,7 @@ impl Plan {
             budget_mapped: self.budgets_vary() && self.budget.mapped,
             kernels: self.needs(|recipe| recipe.kernels),
             windows: self.needs(|recipe| recipe.windows),
+            joins: self.needs(|recipe| recipe.grids > 0),
             packet_lists: self.needs(|recipe| recipe.has(Domain::PacketList) && !recipe.windows),
             pixel_lists: self.needs(|recipe| recipe.has(Domain::PixelList)),
             packet: self.packet,

@@ -49,6 +49,7 @@ pub fn of_view(plan: &Plan, light: &LightPlan, set: &ViewSet, view: &ViewPlan) -
         ("SIDE_BY_SIDE", plan.looks_side_by_side(&set.recipe).into()),
         ("LAYERS", set.recipe.layers.max(1)),
         ("COARSE_LEVELS", set.recipe.coarse_levels),
+        ("EVALUATE", set.recipe.grids),
     ]);
     constants
 }

@@ -95,8 +95,8 @@ mod tests {
             .and_then(|sweep| sweep.with("map", &["64", "128", "256"]))
             .and_then(|sweep| sweep.with("packet", &["2x2", "4x4"]))
             .unwrap();
-        // Packets: 2 splits × 3 maps × 2 packets; hard: nearest and 3×3, times 2 splits × 3 maps.
-        assert_eq!(sweep.settings().unwrap().len(), 12 + 12);
+        // Packets, all pixels evaluated or half: 2 splits × 3 maps × 2 packets; hard: nearest and 3×3, times 2 splits × 3 maps.
+        assert_eq!(sweep.settings().unwrap().len(), 2 * 12 + 12);
     }
 
     #[test]

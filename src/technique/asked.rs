@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(
             settings.flags().join(" "),
             "--technique pixel-contour --map 1024 --bias 0.25 --split 1 --hierarchy graded --mssm-bits 32 \
-             --budget none --hierarchical --multisample 1"
+             --budget none --evaluate full --hierarchical --multisample 1"
         );
     }
 

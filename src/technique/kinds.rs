@@ -39,6 +39,29 @@ choice! {
     }
 }
 
+choice! {
+    /// Which penumbra pixels are evaluated; the others are joined from these.
+    enum Evaluate, "share of pixels to evaluate" {
+        /// All.
+        Full = "full",
+        /// Half of them along a side of a tile, where those around them are of one surface and all penumbra.
+        Half = "half",
+        /// A quarter of them along a side, or else half.
+        Quarter = "quarter",
+    }
+}
+
+impl Evaluate {
+    /// [grid] Sparser than that of all pixels, up to this one.
+    pub const fn grids(self) -> u32 {
+        match self {
+            Self::Full => 0,
+            Self::Half => 1,
+            Self::Quarter => 2,
+        }
+    }
+}
+
 impl Hierarchy {
     /// [texel] Side of the coarse map of a YSM [Schwarz08 §6].
     const YSM_SIDE: u32 = 256;

@@ -7,8 +7,8 @@
 //! occluders of themselves.
 
 use super::{
-    CLASSIFY, CONTOUR_BIAS, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings, TILES,
-    TURNS_OF_WALKS, budget_knobs, once, with,
+    CLASSIFY, CONTOUR_BIAS, Evaluate, KERNELS, Leaf, Mapping, Method, PIXELS, Recipe, Settings,
+    TILES, TURNS_OF_WALKS, budget_knobs, once, with,
 };
 use crate::frame::{Domain, Pass};
 
@@ -93,9 +93,13 @@ impl Method for PacketContour {
     fn make_usual(&self, _settings: &mut Settings) {}
 
     fn variants(&self, usual: Settings) -> Vec<Settings> {
+        let one_view = with(&usual, |settings| settings.split = 1);
+        let joining = |settings: &Settings| with(settings, |s| s.evaluate = Evaluate::Half);
         vec![
-            with(&usual, |settings| settings.split = 1),
+            joining(&one_view),
+            one_view,
             with(&usual, |settings| settings.split = 2),
+            joining(&usual),
             usual,
         ]
     }

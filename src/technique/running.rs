@@ -92,6 +92,7 @@ impl Settings {
         let is_read = match flag {
             "technique" => !point || self.technique == Technique::Hard,
             "hierarchy" | "mssm-bits" => !point && Recipe::new(self).kernels,
+            "evaluate" => !point && Recipe::new(self).can_join(),
             "counters" | "multisample" => true,
             "no-neighbour-visibility" => self.multisample > 1,
             _ => own.contains(&flag),

@@ -2,7 +2,9 @@
 
 use super::Technique;
 use super::field::Field;
-use super::kinds::{Accumulate, Hierarchy, Leaf, Mapping, Neighbours, Occluders, Pattern};
+use super::kinds::{
+    Accumulate, Evaluate, Hierarchy, Leaf, Mapping, Neighbours, Occluders, Pattern,
+};
 use super::knob::{self, Access};
 use super::row::Row;
 
@@ -333,6 +335,16 @@ settings! {
             "With --budget: look for kernels in no more than the texels in them, which ends shadows of coarse levels too early",
         )
         .sets("QUERY_GROWTH");
+
+    /// Without a budget: which penumbra pixels are evaluated.
+    evaluate: Evaluate = Evaluate::Full,
+        Row::value(
+            "evaluate",
+            "SHARE",
+            "Penumbra pixels that are evaluated along a side, {}; the others are joined from those around them on the same \
+             surface, which is faster and blurs; with techniques that have kernels, without --budget",
+        )
+        .swept("evaluate", "SHARES", "Values of --evaluate [default: as the technique has it]");
 
     /// Leave out nodes whose back-projection misses the light (`algorithm.md` §7).
     footprint_pruning: bool = true,
