@@ -29,7 +29,7 @@ fn the_same_shot_has_the_same_bits() {
     }
 }
 
-/// Faces, points near occluders, lists of packets of a fixed size, and techniques that read the map in other ways. Views fill their
+/// Faces, cut sub-lights, pixels that are joined, lists of packets of a fixed size, and techniques that read the map in other ways. Views fill their
 /// dispatches by fives, the last one not wholly.
 #[test]
 fn how_many_views_are_made_at_once_changes_no_bit() {
@@ -46,6 +46,13 @@ fn how_many_views_are_made_at_once_changes_no_bit() {
             Settings {
                 hierarchy: Hierarchy::Mssm,
                 packet: (4, 4),
+                ..settings(64, 3)
+            },
+        ),
+        (
+            "hexagon",
+            Settings {
+                evaluate: Evaluate::Quarter,
                 ..settings(64, 3)
             },
         ),

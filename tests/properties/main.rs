@@ -24,7 +24,7 @@ use halfshade::gpu::Gpu;
 use halfshade::plan::{Lighting, Outputs, Plan, plan};
 use halfshade::scene::{AreaLight, LightShape, Scene};
 use halfshade::shot::Shot;
-use halfshade::technique::{Hierarchy, Settings, Technique};
+use halfshade::technique::{Evaluate, Hierarchy, Settings, Technique};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
