@@ -26,7 +26,7 @@ use halfshade::twin::receiver::{Receiver, in_view, project};
 use halfshade::twin::{resolve, tile};
 
 /// [visibility] The device sums some hundred areas in f32, each with a rounding error of a few 1e-7 of the
-/// light, and interpolates the sectors of discs.
+/// light, and interpolates the sectors of discs and polygons.
 const TOLERANCE: f64 = 1e-4;
 /// [pixel] Where a light is cut into parts, only one diagonal in so many is integrated: each place in a
 /// packet of 4×4 is met, and the many views cost no more than the one of the whole light.
