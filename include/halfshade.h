@@ -234,6 +234,15 @@
 // `accumulate`: In 16 bits, which lose small shares [Atty06 app. A].
 #define HS_ACCUMULATE_FP16 1
 
+// `evaluate`: All.
+#define HS_EVALUATE_FULL 0
+
+// `evaluate`: Half of them along a side of a tile, where those around them are of one surface and all penumbra.
+#define HS_EVALUATE_HALF 1
+
+// `evaluate`: A quarter of them along a side, or else half.
+#define HS_EVALUATE_QUARTER 2
+
 // A device and its objects' common ground. Opaque.
 typedef struct hs_context hs_context;
 

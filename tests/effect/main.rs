@@ -23,7 +23,7 @@ use halfshade::render::{
 use halfshade::scene::{AreaLight, LightShape};
 use halfshade::shared::{Fit, NORMAL_SIGNED, View};
 use halfshade::shot::Shot;
-use halfshade::technique::{Settings, Technique};
+use halfshade::technique::{Evaluate, Settings, Technique};
 
 use host::{Host, with_host};
 
@@ -322,6 +322,12 @@ fn effects_give_what_the_renderer_gives() {
         let stage = Stage::new(&gpu, settings(2), |light| light.shape = triangle);
         check_meshes(host, &stage);
         refuses_other_outlines(&gpu, &stage);
+        let joining = Settings {
+            evaluate: Evaluate::Quarter,
+            ..settings(1)
+        };
+        let stage = Stage::new(&gpu, joining, |_| {});
+        check_meshes(host, &stage);
         // Maps of the bottoms and of the receivers are drawn from meshes as well, and from nothing else.
         let scattered = Settings {
             technique: Technique::OccluderDriven,
