@@ -36,7 +36,7 @@ writeonly BUFFER(windows);
 BUFFER(lists);
 
 shared uint penumbra[2];
-shared Kernel kernels_of_tile[TILE_SIZE * TILE_SIZE];
+shared Kernel kernels_of_tile[EVALUATE > 0u ? TILE_SIZE * TILE_SIZE : 1u];
 
 // [cell] Kernels no wider and no higher are looked at sample by sample. A tilted surface without occluders has such a
 // kernel of its own, for bounds do not tell it from an occluder: uphill it comes nearer to the light.
