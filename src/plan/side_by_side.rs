@@ -63,7 +63,7 @@ impl Plan {
     }
 }
 
-/// [byte] On a CPU a dispatch costs next to nothing, and its caches hold what one view needs: it takes 5 to 10 % more time for several.
+/// [byte] On a CPU a dispatch costs next to nothing, and its caches hold what one view needs: it takes 2 to 12 % more time for several.
 fn bytes_by_default(limits: &Limits) -> u64 {
     match limits.is_cpu {
         true => 0,
