@@ -175,7 +175,7 @@ impl Part {
         &self.left.cut
     }
 
-    /// What the device looks up of a part that is cut: its sectors ([`sweep::sectors`]), then its edges, the normal and the distance of
+    /// What the device looks up of a part that is cut: its sectors (`sub_light/sweep.rs`), then its edges, the normal and the distance of
     /// each. Empty where it is its cell.
     pub fn table(&self) -> &Arc<[f32]> {
         &self.table
