@@ -29,7 +29,7 @@ pub struct Shot {
     pub settings: Settings,
     /// [0, 1] Shares of the settings' budget that pixels have [Schwarz08 §4.2], stretched over the image; none = all of it.
     pub budget_map: Option<Arc<Plane>>,
-    /// The lights come in candela, lux and nit, so that their picture needs an exposure ([`crate::plan::suited_exposure`]).
+    /// The lights come in candela, lux and nit, so that their picture needs an exposure (`plan::suited_exposure`).
     pub physical: bool,
     /// What the shot file asked for and is ignored, a sentence each (`Scene::notes` are the scene's).
     pub notes: Vec<String>,

@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(
             settings.flags().join(" "),
             "--technique pixel-contour --map 1024 --bias 0.25 --split 1 --hierarchy graded --mssm-bits 32 \
-             --budget none --evaluate full --hierarchical --multisample 1"
+             --views-at-once none --budget none --evaluate full --hierarchical --multisample 1"
         );
     }
 
@@ -129,6 +129,7 @@ mod tests {
                             "technique",
                             "map",
                             "bias",
+                            "views-at-once",
                             "percentage-closer",
                             "multisample",
                             "counters"
@@ -137,7 +138,7 @@ mod tests {
                 }
                 _ => assert_eq!(
                     read,
-                    ["map", "bias", "multisample", "counters"],
+                    ["map", "bias", "views-at-once", "multisample", "counters"],
                     "{technique}"
                 ),
             }
