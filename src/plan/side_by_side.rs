@@ -42,7 +42,9 @@ impl Plan {
             let mut shapes = resources.iter().map(|resource| resource.shape);
             shapes.all(|shape| fits(shape, limits)) && peak_bytes(&resources) <= most_bytes
         };
-        let most = (1..=most).rev().find(there_is_room).unwrap_or(1);
+        // More take more room.
+        let counts: Vec<u32> = (1..=most).collect();
+        let most = counts.partition_point(there_is_room).max(1) as u32;
         self.views_at_once = views.div_ceil(views.div_ceil(most));
     }
 

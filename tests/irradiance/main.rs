@@ -107,6 +107,11 @@ prop_compose! {
     }
 }
 
+/// Turns a case's surface; see [`tilted`].
+fn tilt(case: &mut Case, aside: DVec3, highest: f64) {
+    case.normal = tilted(&case.light, &case.corners, case.position, aside, highest);
+}
+
 /// The same cases in every run.
 fn runner(cases: u32) -> TestRunner {
     let config = Config {
@@ -153,7 +158,7 @@ fn receivers_beside_the_border() {
             * Vec2::from(case.light.half_size)
             * outward as f32;
         case.position = u * offset.x + v * offset.y + n * (offset.length() * slope as f32);
-        case.normal = tilted(&case.light, &case.corners, case.position, aside, 0.3);
+        tilt(&mut case, aside, 0.3);
         case
     });
     let largest = largest_error(10000, beside);
@@ -167,13 +172,7 @@ fn the_limit_is_a_point() {
     let result = runner(500).run(&cases, |(mut case, size)| {
         let distance = case.position.length();
         case.light.half_size = [0.0; 2];
-        case.normal = tilted(
-            &case.light,
-            &case.corners,
-            case.position,
-            DVec3::new(0.3, 0.5, 0.8),
-            0.4,
-        );
+        tilt(&mut case, DVec3::new(0.3, 0.5, 0.8), 0.4);
         let point = case.irradiance();
         let to_light = -case.position.as_dvec3();
         let square = to_light.length_squared();
@@ -239,13 +238,7 @@ fn a_point_without_direction_has_no_cosine_of_its_own() {
     let result = runner(200).run(&a_case(), |mut case| {
         case.light.half_size = [0.0; 2];
         case.light.spread = SPREAD_POINT;
-        case.normal = tilted(
-            &case.light,
-            &case.corners,
-            case.position,
-            DVec3::new(0.3, 0.5, 0.8),
-            0.4,
-        );
+        tilt(&mut case, DVec3::new(0.3, 0.5, 0.8), 0.4);
         for position in [case.position, -case.position] {
             let to_light = -position.as_dvec3();
             let wanted = to_light.dot(case.normal.as_dvec3()).max(0.0) / to_light.length().powi(3);
@@ -260,36 +253,40 @@ fn a_point_without_direction_has_no_cosine_of_its_own() {
     result.expect("the inverse square");
 }
 
+/// A coordinate, ordinary or extreme.
+fn a_place() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        Just(0.0),
+        Just(1e-30),
+        Just(1e-7),
+        Just(1.0),
+        Just(1e18),
+        -1.0..1.0f32
+    ]
+}
+
+/// A light's half size, ordinary or extreme.
+fn a_size() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        Just(0.0),
+        Just(1e-40),
+        Just(1e-18),
+        Just(1e-5),
+        Just(1.0),
+        Just(1e18f32)
+    ]
+}
+
 /// Nothing of any place or size is not a number, below zero or above a whole hemisphere of light.
 #[test]
 fn no_case_is_too_extreme() {
-    let place = || {
-        prop_oneof![
-            Just(0.0),
-            Just(1e-30),
-            Just(1e-7),
-            Just(1.0),
-            Just(1e18),
-            -1.0..1.0f32
-        ]
-    };
-    let places = (place(), place(), place());
-    let sizes = || {
-        prop_oneof![
-            Just(0.0),
-            Just(1e-40),
-            Just(1e-18),
-            Just(1e-5),
-            Just(1.0),
-            Just(1e18f32)
-        ]
-    };
+    let places = (a_place(), a_place(), a_place());
     let cases = (
         places,
         a_direction(),
         0..4u32,
-        sizes(),
-        sizes(),
+        a_size(),
+        a_size(),
         any::<bool>(),
     );
     let result = runner(20000).run(
